@@ -1,0 +1,14 @@
+/// The sub-commands of `raypool`: each adds its options to the parser, and what it does when it is the one called.
+///
+/// A command returns its exit status through `status`: 0 done, 1 failed or differs. Bad input is an InputError.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace raypool::cli {
+
+void add_render_command(CLI::App& app, int& status);
+void add_info_command(CLI::App& app, int& status);
+void add_diff_command(CLI::App& app, int& status);
+
+}  // namespace raypool::cli

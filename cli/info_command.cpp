@@ -1,0 +1,63 @@
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cli/commands.h"
+#include "core/compiled_scene.h"
+#include "core/scene_reader.h"
+
+namespace raypool::cli {
+
+namespace {
+
+template <class Block>
+std::size_t filled_lanes(const std::vector<Block>& blocks) {
+    std::size_t count = 0;
+    for (const Block& block : blocks)
+        for (const std::int32_t id : block.id) count += id != kNoPrimitive ? 1 : 0;
+    return count;
+}
+
+template <class Tree>
+void print_tree(const char* what, const Tree& tree) {
+    if (tree.nodes.empty()) return;
+    const std::size_t lanes = tree.blocks.size() * kTreeWidth<float>;
+    fmt::print("{} tree: {} nodes {} wide, {} levels, {} leaves holding {} ({:.0f} % full)\n", what, tree.nodes.size(),
+               kTreeWidth<float>, tree.depth, tree.blocks.size(), filled_lanes(tree.blocks),
+               100.0 * static_cast<double>(filled_lanes(tree.blocks)) / static_cast<double>(lanes));
+}
+
+void info(const std::string& name) {
+    const Scene scene = load_scene(name);
+    const CompiledScene<float> compiled = compile<float>(scene);
+    const auto listed = [](const SceneNeeds& needs) {
+        const auto names = feature_names(needs);
+        return names.empty() ? std::string("nothing") : fmt::format("{}", fmt::join(names, ", "));
+    };
+    fmt::print("{}: {}\n", scene.name, scene.description);
+    fmt::print("image: {} x {}\n", scene.width, scene.height);
+    fmt::print("shapes: {} spheres, {} quads, {} planes; {} materials, {} textures\n", scene.spheres.size(),
+               scene.quads.size(), scene.planes.size(), scene.materials.size(), scene.textures.size());
+    fmt::print("needs: {}\n", listed(compiled.needs));
+    fmt::print("runs on code compiled for: {}\n", listed(kCompiledNeeds[compiled_needs_index(compiled.needs)]));
+    fmt::print("ray record: {} bytes in float, {} in double\n", ray_record_bytes(compiled.needs, sizeof(float)),
+               ray_record_bytes(compiled.needs, sizeof(double)));
+    fmt::print("tested before the trees: {} spheres, {} planes\n", filled_lanes(compiled.large_spheres),
+               filled_lanes(compiled.planes));
+    print_tree("sphere", compiled.sphere_tree);
+    print_tree("quad", compiled.quad_tree);
+    fmt::print("tables: {:.1f} KB\n", static_cast<double>(compiled.bytes()) / 1024);
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, int&) {
+    auto scene = std::make_shared<std::string>("paper");
+    CLI::App* command = app.add_subcommand("info", "Say what a scene needs, and how its tables came out");
+    command->add_option("scene", *scene, "Scene file, or the name of a built-in scene (default: paper)");
+    command->callback([scene] { info(*scene); });
+}
+
+}  // namespace raypool::cli

@@ -1,0 +1,53 @@
+// The raypool command. The only place that catches: bad input is one line on stderr and exit status 2.
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.h"
+#include "core/error.h"
+
+namespace {
+
+int fail(int status, std::string text) {
+    for (char& c : text)
+        if (c == '\n') c = ' ';
+    fmt::print(stderr, "raypool: {}\n", text);
+    return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    // Writing past a limit or into a closed pipe shall be an error that can be reported, not a signal that kills.
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
+    try {
+        CLI::App app("Ray pools against recursion on a CPU: one image, two orders of work, measured.", "raypool");
+        app.require_subcommand(1);
+        app.set_version_flag("--version", RAYPOOL_VERSION);
+        int status = 0;
+        raypool::cli::add_render_command(app, status);
+        raypool::cli::add_info_command(app, status);
+        raypool::cli::add_diff_command(app, status);
+        try {
+            app.parse(argc, argv);
+        } catch (const CLI::ParseError& error) {
+            if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+            return fail(2, fmt::format("{} (see --help)", error.what()));
+        }
+        if (std::fflush(stdout) != 0) return fail(1, "cannot write to the standard output");
+        return status;
+    } catch (const raypool::InputError& error) {
+        return fail(2, error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(1, "out of memory");
+    } catch (const std::exception& error) {
+        return fail(1, error.what());
+    }
+}

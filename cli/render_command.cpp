@@ -1,0 +1,208 @@
+#include <omp.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <limits>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "cli/progress_bar.h"
+#include "cli/stats_json.h"
+#include "core/error.h"
+#include "core/image_file.h"
+#include "core/output_file.h"
+#include "core/scene_reader.h"
+#include "recursive/engine.h"
+
+namespace raypool::cli {
+
+namespace {
+
+struct RenderOptions {
+    std::string scene = "paper";
+    std::string output;
+    std::string stats;
+    std::string engine = "recursive";
+    std::int64_t spp = 100;
+    std::int64_t width = 0;  ///< 0: the scene's
+    std::int64_t depth = 50;
+    std::uint64_t seed = 0;
+    std::string samples;
+    int threads = 0;  ///< 0: OpenMP's
+    std::string schedule;
+    std::string grain = "line";
+    std::string precision = "float";
+    bool count_work = false;
+    bool is_quiet = false;
+};
+
+class Stopwatch {
+  public:
+    [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+    double lap() {
+        const double elapsed = seconds();
+        start_ = Clock::now();
+        return elapsed;
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point start_ = Clock::now();
+};
+
+std::unique_ptr<Engine> make_engine(const std::string& name) {
+    if (name == "iterative") return std::make_unique<recursive::IterativeEngine>();
+    return std::make_unique<recursive::RecursiveEngine>();
+}
+
+RenderSettings render_settings(const RenderOptions& options) {
+    RenderSettings settings;
+    settings.end_sample = options.spp;
+    if (!options.samples.empty()) {
+        const SampleRange range = parse_samples(options.samples, options.spp);
+        settings.first_sample = range.first;
+        settings.end_sample = range.end;
+    }
+    settings.depth = static_cast<std::int32_t>(options.depth);
+    settings.seed = options.seed;
+    settings.threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
+    settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
+    settings.grain = parse_grain(options.grain);
+    settings.count_work = options.count_work;
+    return settings;
+}
+
+/// Sums and the image made of them must fit into the machine, before anything is touched.
+void check_memory(const Scene& scene) {
+    const double bytes = static_cast<double>(scene.width * scene.height) * 3 * (sizeof(std::int64_t) + sizeof(float));
+    const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (bytes > machine)
+        throw InputError(
+            fmt::format("--width: an image of {} x {} pixels needs {:.1f} GB of memory, this machine has {:.1f}",
+                        scene.width, scene.height, bytes * 1e-9, machine * 1e-9));
+}
+
+ImageAttributes image_attributes(const RenderRecord& record) {
+    ImageAttributes attributes{{"raypool.hash", record.hash}};
+    const nlohmann::json settings = settings_json(record);
+    for (const auto& [key, value] : settings.items())
+        attributes["raypool." + key] = value.is_string() ? value.get<std::string>() : value.dump();
+    return attributes;
+}
+
+void print_summary(const RenderRecord& record) {
+    const RenderSettings& settings = record.settings;
+    const RenderReport& report = record.report;
+    const auto paths = static_cast<double>(report.paths());
+    const auto segments = static_cast<double>(report.segments());
+    fmt::print("{}: {} x {}, samples {} to {} of {}, depth {}, seed {}, {}\n", record.scene_name, record.width,
+               record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth, settings.seed,
+               record.precision == Precision::Float ? "float" : "double");
+    fmt::print("{} engine: {} thread{}, grain {}, schedule {}\n", record.engine, settings.threads,
+               settings.threads == 1 ? "" : "s", to_string(settings.grain), to_string(settings.schedule));
+    fmt::print("{:.3f} M paths, {:.3f} M segments ({:.3f} a path) in {:.3f} s: {:.3f} M paths/s, {:.1f} ns a segment\n",
+               paths * 1e-6, segments * 1e-6, segments / paths, report.seconds, paths / report.seconds * 1e-6,
+               segments == 0 ? 0 : report.seconds * 1e9 * settings.threads / segments);
+    if (settings.count_work)
+        fmt::print("{:.2f} box tests and {:.2f} primitive tests a segment\n",
+                   static_cast<double>(report.total(&ThreadWork::box_tests)) / segments,
+                   static_cast<double>(report.total(&ThreadWork::primitive_tests)) / segments);
+    if (report.audit.non_finite > 0 || report.audit.clamped > 0)
+        fmt::print("bad samples: {} not finite and left out, {} channels cut (radiance {:.6g} in all)\n",
+                   report.audit.non_finite, report.audit.clamped, report.audit.clamped_energy);
+    fmt::print("hash {}\n", record.hash);
+}
+
+template <class Scalar>
+Image render_scene(const Scene& scene, bool is_quiet, RenderRecord& record) {
+    Stopwatch watch;
+    const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
+    record.needs = compiled.needs;
+    record.compile_s = watch.lap();
+
+    Framebuffer framebuffer(compiled.width, compiled.height, FixedPoint::make(record.spp, compiled.max_radiance));
+    Progress progress;
+    record.settings.progress = &progress;
+    const std::int64_t sample_count = record.settings.end_sample - record.settings.first_sample;
+    {
+        const ProgressBar bar(progress, compiled.pixel_count() * sample_count, is_quiet);
+        record.report = make_engine(record.engine)->render(compiled, record.settings, framebuffer);
+    }
+    record.settings.progress = nullptr;
+    record.hash = framebuffer.hash();
+    return framebuffer.image(sample_count);
+}
+
+void render(const RenderOptions& options) {
+    const Stopwatch total;
+    RenderRecord record;
+    record.settings = render_settings(options);
+    record.spp = options.spp;
+    record.precision = options.precision == "double" ? Precision::Double : Precision::Float;
+    record.engine = options.engine;
+    if (!options.output.empty()) {
+        image_format(options.output);
+        check_writable(options.output);
+    }
+    if (!options.stats.empty()) check_writable(options.stats);
+
+    Stopwatch watch;
+    Scene scene = load_scene(options.scene);
+    if (options.width != 0) set_width(scene, options.width);
+    check_memory(scene);
+    record.scene_name = scene.name;
+    record.width = scene.width;
+    record.height = scene.height;
+    record.read_s = watch.seconds();
+
+    const Image image = record.precision == Precision::Double ? render_scene<double>(scene, options.is_quiet, record)
+                                                              : render_scene<float>(scene, options.is_quiet, record);
+    watch.lap();
+    if (!options.output.empty()) write_image(options.output, image, image_attributes(record));
+    record.write_s = watch.seconds();
+    record.total_s = total.seconds();
+    if (!options.stats.empty()) write_json(options.stats, stats_json(record));
+
+    if (options.is_quiet) return;
+    print_summary(record);
+    if (!options.output.empty()) fmt::print("{}\n", options.output);
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, int&) {
+    auto options = std::make_shared<RenderOptions>();
+    CLI::App* command = app.add_subcommand("render", "Render a scene, print its figures and the hash of its sums");
+    constexpr std::int64_t kMostSpp = std::numeric_limits<std::int32_t>::max();
+    command->add_option("scene", options->scene, "Scene file, or the name of a built-in scene (default: paper)");
+    command->add_option("-o,--output", options->output, "Image file: .png (sRGB), .exr or .pfm (linear)");
+    command->add_option("--engine", options->engine, "How paths are followed (default: recursive)")
+        ->check(CLI::IsMember({"recursive", "iterative"}));
+    command->add_option("--spp", options->spp, "Samples per pixel (default: 100)")
+        ->check(CLI::Range(std::int64_t{1}, kMostSpp));
+    command->add_option("--samples", options->samples, "Only samples A:B of them, counted from 0, without B");
+    command->add_option("--width", options->width, "Image width; the height follows (default: the scene's)")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
+    command->add_option("--depth", options->depth, "Most segments of a path (default: 50)")
+        ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000'000}));
+    command->add_option("--seed", options->seed, "Seed of all random numbers (default: 0)");
+    command->add_option("--precision", options->precision, "Numbers of the kernels (default: float)")
+        ->check(CLI::IsMember({"float", "double"}));
+    command->add_option("--threads", options->threads, "OpenMP threads (default: OMP_NUM_THREADS)")
+        ->check(CLI::Range(1, 4096));
+    command->add_option("--schedule", options->schedule,
+                        "static, dynamic or guided, and a chunk: dynamic,4 (default: OMP_SCHEDULE, else dynamic)");
+    command->add_option("--grain", options->grain,
+                        "What a loop iteration renders: pixel, line or tile:N (default: line)");
+    command->add_flag("--count-work", options->count_work, "Count box and primitive tests (slower)");
+    command->add_option("--stats", options->stats, "Write all figures to this file, as JSON");
+    command->add_flag("--quiet", options->is_quiet, "Print nothing");
+    command->callback([options] { render(*options); });
+}
+
+}  // namespace raypool::cli

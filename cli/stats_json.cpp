@@ -1,0 +1,72 @@
+#include "cli/stats_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/environment.h"
+#include "core/output_file.h"
+
+namespace raypool::cli {
+
+using nlohmann::json;
+
+json settings_json(const RenderRecord& record) {
+    const RenderSettings& settings = record.settings;
+    return {{"scene", record.scene_name},
+            {"width", record.width},
+            {"height", record.height},
+            {"spp", record.spp},
+            {"samples", {settings.first_sample, settings.end_sample}},
+            {"depth", settings.depth},
+            {"seed", settings.seed},
+            {"precision", record.precision == Precision::Float ? "float" : "double"},
+            {"engine", record.engine},
+            {"threads", settings.threads},
+            {"schedule", to_string(settings.schedule)},
+            {"grain", to_string(settings.grain)},
+            {"count_work", settings.count_work}};
+}
+
+json stats_json(const RenderRecord& record) {
+    const RenderReport& report = record.report;
+    const auto paths = static_cast<double>(report.paths());
+    const auto segments = static_cast<double>(report.segments());
+    json threads = json::array();
+    for (const ThreadWork& work : report.threads) {
+        json thread{
+            {"paths", work.paths}, {"segments", work.segments}, {"busy_s", work.busy_s}, {"wait_s", work.wait_s}};
+        if (record.settings.count_work) {
+            thread["box_tests"] = work.box_tests;
+            thread["primitive_tests"] = work.primitive_tests;
+        } else {
+            thread["box_tests"] = nullptr;
+            thread["primitive_tests"] = nullptr;
+        }
+        threads.push_back(thread);
+    }
+    return {{"hash", record.hash},
+            {"seconds",
+             {{"read", record.read_s},
+              {"compile", record.compile_s},
+              {"render", report.seconds},
+              {"write", record.write_s},
+              {"total", record.total_s}}},
+            {"paths", report.paths()},
+            {"segments", report.segments()},
+            {"segments_per_path", segments / paths},
+            {"mpaths_per_s", paths / report.seconds * 1e-6},
+            {"audit",
+             {{"non_finite", report.audit.non_finite},
+              {"clamped", report.audit.clamped},
+              {"clamped_energy", report.audit.clamped_energy}}},
+            {"needs", feature_names(record.needs)},
+            {"settings", settings_json(record)},
+            {"environment", environment_json()},
+            {"threads", threads}};
+}
+
+void write_json(const std::filesystem::path& path, const json& json) {
+    const std::string text = json.dump(2) + "\n";
+    write_whole(path, std::as_bytes(std::span(text)));
+}
+
+}  // namespace raypool::cli

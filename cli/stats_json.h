@@ -1,0 +1,38 @@
+/// The JSON that `--stats` writes, and what the render command knows to put into it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "cli/options.h"
+#include "core/engine.h"
+
+namespace raypool::cli {
+
+/// A render from the scene file to the image file, for the record.
+struct RenderRecord {
+    std::string scene_name;
+    SceneNeeds needs;
+    std::int64_t width = 0;
+    std::int64_t height = 0;
+    std::int64_t spp = 0;
+    Precision precision = Precision::Float;
+    std::string engine;
+    RenderSettings settings;
+    RenderReport report;
+    std::string hash;
+    double read_s = 0;     ///< scene file to description
+    double compile_s = 0;  ///< description to tables
+    double write_s = 0;    ///< sums to image file
+    double total_s = 0;
+};
+
+nlohmann::json settings_json(const RenderRecord& record);
+nlohmann::json stats_json(const RenderRecord& record);
+
+/// Writes the JSON whole or not at all.
+void write_json(const std::filesystem::path& path, const nlohmann::json& json);
+
+}  // namespace raypool::cli

@@ -1,0 +1,34 @@
+# Every compiler flag that an image or a figure depends on, in one place. All targets link raypool::flags.
+#
+# -ffp-contract=off    a fused multiply-add happens only where the source says so: one image on every machine
+# -fno-math-errno      sqrt is one instruction
+# Not here, ever: -ffast-math and its parts. They change images (docs/architecture.md, "One image").
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+set(RAYPOOL_ARCH "native" CACHE STRING "Instruction set: the value of -march=")
+set(RAYPOOL_SANITIZE "" CACHE STRING "Sanitizers: the value of -fsanitize=, empty for none")
+option(RAYPOOL_WERROR "Treat warnings as errors" OFF)
+
+add_library(raypool_flags INTERFACE)
+add_library(raypool::flags ALIAS raypool_flags)
+set_target_properties(raypool_flags PROPERTIES EXPORT_NAME flags)
+target_compile_features(raypool_flags INTERFACE cxx_std_20)
+target_compile_options(raypool_flags INTERFACE
+  -march=${RAYPOOL_ARCH} -ffp-contract=off -fno-math-errno)
+target_compile_definitions(raypool_flags INTERFACE EIGEN_DONT_PARALLELIZE EIGEN_DONT_VECTORIZE)
+
+add_library(raypool_warnings INTERFACE)
+# gcc 12 finds "uninitialised" values inside its own AVX-512 header (its bug 105593).
+target_compile_options(raypool_warnings INTERFACE -Wall -Wextra $<$<BOOL:${RAYPOOL_WERROR}>:-Werror>
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+if(RAYPOOL_SANITIZE)
+  target_compile_options(raypool_warnings INTERFACE -fsanitize=${RAYPOOL_SANITIZE} -fno-omit-frame-pointer
+    -fno-sanitize-recover=all)
+  target_link_options(raypool_warnings INTERFACE -fsanitize=${RAYPOOL_SANITIZE})
+endif()

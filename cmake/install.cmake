@@ -1,0 +1,25 @@
+# `cmake --install`: the command, the libraries with their headers, and the package that find_package(raypool) finds.
+#
+# A consumer links raypool::core or raypool::recursive and includes "core/scene.h". The compiler flags come along with
+# raypool::flags, as they must: kernels are templates in headers, and an image depends on how they are compiled.
+
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/raypool)
+set(folders core recursive)
+
+install(TARGETS raypool)
+# The static libraries name the warnings they were built with; who links them does not get those.
+set_target_properties(raypool_warnings PROPERTIES EXPORT_NAME warnings)
+install(TARGETS raypool_flags raypool_warnings EXPORT raypoolTargets)
+foreach(folder IN LISTS folders)
+  set_target_properties(raypool_${folder} PROPERTIES EXPORT_NAME ${folder})
+  install(TARGETS raypool_${folder} EXPORT raypoolTargets INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/raypool)
+  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/raypool FILES_MATCHING PATTERN "*.h")
+endforeach()
+
+install(EXPORT raypoolTargets NAMESPACE raypool:: DESTINATION ${package_dir})
+configure_package_config_file(cmake/raypoolConfig.cmake.in raypoolConfig.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(raypoolConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/raypoolConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/raypoolConfigVersion.cmake
+        DESTINATION ${package_dir})

@@ -1,0 +1,126 @@
+/// The scene as the kernels read it: immutable tables in the precision of the render.
+///
+/// Made by compile(); shared by all threads without locks. Engines and kernels see nothing of the description in
+/// scene.h. A primitive's id counts spheres, then quads, then planes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/bvh.h"
+#include "core/camera.h"
+#include "core/needs.h"
+#include "core/scene.h"
+#include "core/textures.h"
+
+namespace raypool {
+
+/// What shading needs of a primitive and its material: a row of 16 scalars, found by the primitive's id.
+template <class Scalar>
+struct alignas(16 * sizeof(Scalar)) SurfaceRow {
+    enum Column {
+        kCenter = 0,     ///< of a sphere at time 0, three; or the unit normal of a quad or plane
+        kRadius = 3,     ///< 0 marks a quad or plane
+        kMotion = 4,     ///< of the centre from time 0 to 1, three
+        kParameter = 7,  ///< fuzz of metal, index of refraction of glass
+        kColour = 8,     ///< three: albedo or radiance; of a checker the even colour
+        kMaterial = 11,  ///< Material::Kind
+        kTexture = 12,   ///< Texture::Kind
+        kTextureRow = 13,
+        kFlatRow = 14,
+        kColumns = 16
+    };
+    Scalar value[kColumns];
+};
+
+template <class Scalar>
+struct alignas(4 * sizeof(Scalar)) TextureRow {
+    enum Column { kOdd = 0, kScaleHigh = 3, kOffset = 4, kScaleLow = 7, kColumns = 8 };
+    Scalar value[kColumns];  ///< of a checker: the odd colour (3), 1 / edge in two parts, the offset (3)
+};
+
+/// Surface coordinates of quads and planes: (p - corner) . dual_u and (p - corner) . dual_v.
+template <class Scalar>
+struct alignas(4 * sizeof(Scalar)) FlatRow {
+    enum Column { kCorner = 0, kDualU = 4, kDualV = 8, kColumns = 12 };
+    Scalar value[kColumns];
+};
+
+/// Up to `lanes` spheres, a lane each. An unused lane has a NaN radius, which no ray hits, and no id.
+template <class Scalar, int lanes>
+struct alignas(64) SphereBlock {
+    static constexpr int kLanes = lanes;
+    Scalar center[3][lanes];
+    Scalar motion[3][lanes];
+    Scalar radius[lanes];
+    Scalar padded_radius[lanes];  ///< half the edge of the sphere's own box: every rounding error stays inside
+    std::int32_t id[lanes];
+};
+
+/// Up to `lanes` quads (or, without a box, planes). An unused lane has a NaN normal and no id.
+template <class Scalar, int lanes>
+struct alignas(64) FlatBlock {
+    static constexpr int kLanes = lanes;
+    Scalar corner[3][lanes];
+    Scalar normal[3][lanes];
+    Scalar dual_u[3][lanes];  ///< unused by planes
+    Scalar dual_v[3][lanes];
+    Scalar low[3][lanes];  ///< the padded box; unused by planes
+    Scalar high[3][lanes];
+    std::int32_t id[lanes];
+};
+
+/// A tree whose leaf i is block i.
+template <class Block, class Scalar, int width>
+struct BlockTree {
+    std::vector<WideNode<Scalar, width>> nodes;
+    std::vector<Block> blocks;
+    int depth = 0;
+};
+
+/// Children of a node, and primitives of a leaf, in the tree that single rays walk: as many as fill a register, eight
+/// where there is a choice.
+template <class Scalar>
+inline constexpr int kTreeWidth = sizeof(Scalar) == 4 ? 8 : Wide<double, stdx::native_simd<double>::size()>::size();
+
+template <class Scalar>
+struct Sky {
+    Vec3<Scalar> middle;  ///< radiance at the horizon, ...
+    Vec3<Scalar> slope;   ///< ... plus this times the direction's y
+};
+
+template <class Scalar>
+struct CompiledScene {
+    using Spheres = SphereBlock<Scalar, kTreeWidth<Scalar>>;
+    using Flats = FlatBlock<Scalar, kTreeWidth<Scalar>>;
+
+    SceneNeeds needs;
+    std::int64_t width = 0;  ///< of the image, in pixels
+    std::int64_t height = 0;
+    Camera<Scalar> camera;
+    Sky<Scalar> sky;
+    double max_radiance = 0;  ///< no path carries more to the image in any channel
+
+    std::vector<SurfaceRow<Scalar>> surfaces;  ///< by primitive id
+    std::vector<TextureRow<Scalar>> textures;  ///< by kTextureRow
+    std::vector<FlatRow<Scalar>> flats;        ///< by kFlatRow
+    std::vector<ImageView<Scalar>> images;     ///< by texture id, beside `textures`
+    std::vector<Scalar> texels;
+
+    std::vector<Spheres> large_spheres;  ///< those that span the scene: every ray tests them, before the tree
+    std::vector<Flats> planes;           ///< likewise
+    BlockTree<Spheres, Scalar, kTreeWidth<Scalar>> sphere_tree;
+    BlockTree<Flats, Scalar, kTreeWidth<Scalar>> quad_tree;
+
+    [[nodiscard]] std::int64_t pixel_count() const { return width * height; }
+    [[nodiscard]] std::size_t bytes() const;  ///< of all tables
+};
+
+/// Refuses (InputError) an image of more than 2^32 pixels, or more primitives than ids.
+template <class Scalar>
+CompiledScene<Scalar> compile(const Scene& scene);
+
+extern template CompiledScene<float> compile(const Scene&);
+extern template CompiledScene<double> compile(const Scene&);
+
+}  // namespace raypool

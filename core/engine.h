@@ -1,0 +1,104 @@
+/// What every engine is asked and what it answers: RenderSettings, RenderReport, Engine.
+///
+/// An engine owns the order of the work and nothing else; all physics is in core/. For one scene, precision, seed,
+/// depth and sample range, every engine and every setting of the loop makes the same sums.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/compiled_scene.h"
+#include "core/framebuffer.h"
+
+namespace raypool {
+
+/// OpenMP's schedule clause. chunk 0 is OpenMP's default for the kind.
+struct LoopSchedule {
+    enum class Kind : std::uint8_t { Static, Dynamic, Guided };
+    Kind kind = Kind::Static;
+    int chunk = 0;
+};
+
+/// What one iteration of the parallel loop renders.
+struct Grain {
+    enum class Kind : std::uint8_t { Pixel, Line, Tile };
+    Kind kind = Kind::Line;
+    int tile = 16;  ///< edge of a tile in pixels
+};
+
+/// Paths finished so far, for whoever shows it. Engines add, in batches; another thread may read at any time.
+struct Progress {
+    std::atomic<std::int64_t> paths = 0;
+};
+
+struct RenderSettings {
+    std::int64_t first_sample = 0;  ///< samples [first_sample, end_sample) of every pixel
+    std::int64_t end_sample = 1;    ///< at most 2^31
+    std::int32_t depth = 50;        ///< most segments of a path; 0 makes a black image
+    std::uint64_t seed = 0;
+    int threads = 1;
+    LoopSchedule schedule;
+    Grain grain;
+    bool count_work = false;  ///< count box and primitive tests (slower)
+    Progress* progress = nullptr;
+};
+
+/// What one thread did. A cache line each, so that counting does not make threads wait for each other.
+struct alignas(64) ThreadWork {
+    std::int64_t paths = 0;
+    std::int64_t segments = 0;         ///< rays traced, camera rays included
+    std::int64_t box_tests = 0;        ///< with count_work
+    std::int64_t primitive_tests = 0;  ///< with count_work
+    double busy_s = 0;                 ///< within the loop
+    double wait_s = 0;                 ///< at the end of the loop, for the others
+};
+
+struct RenderReport {
+    double seconds = 0;  ///< wall clock of the parallel region
+    std::vector<ThreadWork> threads;
+    SampleAudit audit;
+
+    [[nodiscard]] std::int64_t paths() const { return total(&ThreadWork::paths); }
+    [[nodiscard]] std::int64_t segments() const { return total(&ThreadWork::segments); }
+    [[nodiscard]] std::int64_t total(std::int64_t ThreadWork::*figure) const {
+        std::int64_t sum = 0;
+        for (const ThreadWork& thread : threads) sum += thread.*figure;
+        return sum;
+    }
+};
+
+class Engine {
+  public:
+    Engine() = default;
+    Engine(const Engine&) = delete;
+    Engine& operator=(const Engine&) = delete;
+    virtual ~Engine() = default;
+
+    [[nodiscard]] virtual std::string name() const = 0;
+
+    /// Adds the samples to the framebuffer, which has the scene's size. Throws InputError for settings that this
+    /// engine cannot carry out on this machine; the framebuffer is then untouched.
+    virtual RenderReport render(const CompiledScene<float>& scene, const RenderSettings& settings,
+                                Framebuffer& framebuffer) const = 0;
+    virtual RenderReport render(const CompiledScene<double>& scene, const RenderSettings& settings,
+                                Framebuffer& framebuffer) const = 0;
+};
+
+/// Makes the calling thread treat denormal numbers as zero while it lives; engines hold one in every thread. A path
+/// whose throughput fades would otherwise cost hundreds of times more for light nobody can see.
+class FlushDenormals {
+  public:
+    FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | kFlushToZero | kDenormalsAreZero); }
+    ~FlushDenormals() { _mm_setcsr(before_); }
+    FlushDenormals(const FlushDenormals&) = delete;
+    FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+  private:
+    static constexpr unsigned kFlushToZero = 0x8000;
+    static constexpr unsigned kDenormalsAreZero = 0x0040;
+    unsigned before_;
+};
+
+}  // namespace raypool

@@ -1,0 +1,184 @@
+/// OpenEXR files in memory, through OpenEXR 2.4 or later.
+/// Layout of a header: https://openexr.com/en/latest/OpenEXRFileLayout.html
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include "core/image_codecs.h"
+
+namespace raypool {
+namespace {
+
+using StreamPosition = decltype(std::declval<Imf::OStream&>().tellp());  // its type changed in version 3
+constexpr std::array<const char*, 3> kChannels{"R", "G", "B"};
+constexpr std::size_t kPixelBytes = 3 * sizeof(float);
+
+class MemoryOutput final : public Imf::OStream {
+  public:
+    MemoryOutput() : OStream("the file") {}
+
+    void write(const char data[], int size) override {
+        const std::size_t end = position_ + static_cast<std::size_t>(size);
+        if (end > bytes.size()) bytes.resize(end);
+        std::memcpy(bytes.data() + position_, data, static_cast<std::size_t>(size));
+        position_ = end;
+    }
+    StreamPosition tellp() override { return position_; }
+    void seekp(StreamPosition position) override { position_ = position; }
+
+    Bytes bytes;
+
+  private:
+    std::size_t position_ = 0;
+};
+
+class MemoryInput final : public Imf::IStream {
+  public:
+    explicit MemoryInput(BytesView bytes) : IStream("the file"), bytes_(bytes) {}
+
+    bool read(char target[], int size) override {
+        if (position_ > bytes_.size() || static_cast<std::size_t>(size) > bytes_.size() - position_) {
+            throw std::runtime_error("the file ends too early");
+        }
+        std::memcpy(target, bytes_.data() + position_, static_cast<std::size_t>(size));
+        position_ += static_cast<std::size_t>(size);
+        return position_ < bytes_.size();
+    }
+    StreamPosition tellg() override { return position_; }
+    void seekg(StreamPosition position) override { position_ = position; }
+
+  private:
+    BytesView bytes_;
+    std::size_t position_ = 0;
+};
+
+/// Reads the front of a file piece by piece; a piece that is not all there throws.
+class HeaderWalk {
+  public:
+    explicit HeaderWalk(std::string_view text) : rest_(text) {}
+
+    std::string_view take(std::size_t size) {
+        if (size > rest_.size()) throw std::runtime_error("the file ends too early");
+        const std::string_view piece = rest_.substr(0, size);
+        rest_.remove_prefix(size);
+        return piece;
+    }
+    std::string_view take_name() {
+        const std::string_view name = take(std::min(rest_.find('\0'), rest_.size()));
+        take(1);
+        return name;
+    }
+    std::int32_t take_int() {
+        std::int32_t value = 0;
+        std::memcpy(&value, take(sizeof value).data(), sizeof value);
+        return value;
+    }
+
+  private:
+    std::string_view rest_;
+};
+
+/// Checks what OpenEXR would take at its word when it reserves memory: the sizes of attributes and of the image.
+void check_header(BytesView bytes) {
+    constexpr std::int32_t kMagic = 20000630;
+    constexpr std::int32_t kLongNames = 0x400;  // the only flag of a plain file of scan lines
+    HeaderWalk walk({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    if (walk.take_int() != kMagic) throw std::runtime_error("not an EXR file");
+    std::int32_t version = walk.take_int();
+    if ((version & ~kLongNames) != 2) {
+        throw std::runtime_error("must be version 2 and one part of scan lines: no tiles, deep data or parts");
+    }
+    while (!walk.take_name().empty()) {
+        walk.take_name();  // the type
+        walk.take(static_cast<std::size_t>(walk.take_int()));
+    }
+
+    MemoryInput stream(bytes);
+    stream.seekg(sizeof kMagic + sizeof version);
+    Imf::Header header;
+    header.readFrom(stream, version);
+    const auto& window = header.dataWindow();
+    check_image_size(std::int64_t{window.max.x} - window.min.x + 1, std::int64_t{window.max.y} - window.min.y + 1,
+                     kMaxImageSide);
+}
+
+/// The three channels of the rows in `window`, stored from `first` on.
+template <class Window>
+Imf::FrameBuffer frame_buffer(const float* first, const Window& window) {
+    const std::size_t row_bytes = static_cast<std::size_t>(window.max.x - window.min.x + 1) * kPixelBytes;
+    Imf::FrameBuffer buffer;
+    for (std::size_t i = 0; i < kChannels.size(); ++i) {
+        buffer.insert(kChannels[i], Imf::Slice::Make(Imf::FLOAT, first + i, window, kPixelBytes, row_bytes));
+    }
+    return buffer;
+}
+
+}  // namespace
+
+Bytes encode_exr(const Image& image, const ImageAttributes& attributes) {
+    Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const char* channel : kChannels) header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+    for (const auto& [name, value] : attributes) header.insert(name.c_str(), Imf::StringAttribute(value));
+
+    MemoryOutput stream;
+    {
+        Imf::OutputFile file(stream, header);  // complete only after its destructor
+        file.setFrameBuffer(frame_buffer(image.rgb.data(), header.dataWindow()));
+        file.writePixels(static_cast<int>(image.height));
+    }
+    return std::move(stream.bytes);
+}
+
+Image decode_exr(BytesView bytes) {
+    check_header(bytes);
+    MemoryInput stream(bytes);
+    Imf::InputFile file(stream);
+    for (const char* channel : kChannels) {
+        if (file.header().channels().findChannel(channel) == nullptr) {
+            throw std::runtime_error("must have channels R, G and B");
+        }
+    }
+    const auto window = file.header().dataWindow();
+    Image image;
+    image.width = std::int64_t{window.max.x} - window.min.x + 1;
+    image.height = std::int64_t{window.max.y} - window.min.y + 1;
+
+    // Memory grows with the rows that are really there: how far a row may have been compressed depends on the codec.
+    constexpr std::int64_t kRowsPerStep = 256;  // a multiple of the rows in a block of any codec
+    for (std::int64_t row = 0; row < image.height; row += kRowsPerStep) {
+        const std::int64_t row_end = std::min(row + kRowsPerStep, image.height);
+        image.rgb.resize(static_cast<std::size_t>(row_end * image.width * 3));
+        auto rows = window;
+        rows.min.y = static_cast<int>(window.min.y + row);
+        rows.max.y = static_cast<int>(window.min.y + row_end - 1);
+        file.setFrameBuffer(frame_buffer(image.pixel(0, row), rows));
+        file.readPixels(rows.min.y, rows.max.y);
+    }
+    return image;
+}
+
+ImageAttributes decode_exr_attributes(BytesView bytes) {
+    check_header(bytes);
+    MemoryInput stream(bytes);
+    const Imf::InputFile file(stream);
+    ImageAttributes attributes;
+    for (auto entry = file.header().begin(); entry != file.header().end(); ++entry) {
+        const auto* text = dynamic_cast<const Imf::StringAttribute*>(&entry.attribute());
+        if (text != nullptr) attributes.emplace(entry.name(), text->value());
+    }
+    return attributes;
+}
+
+}  // namespace raypool

@@ -1,0 +1,101 @@
+/// The framebuffer: three int64 fixed-point sums a pixel, interleaved (r, g, b, r, g, b, ...), row 0 at the top.
+///
+/// Integer addition is exact and has no order, so any engine, schedule or thread count that adds the same samples makes
+/// the same bits. Not synchronised: whoever adds must own the pixel, or add atomically to sums().
+/// The step is 2^-k with k chosen so that no render can overflow: spp samples of the scene's greatest radiance fit.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/vec.h"
+
+namespace raypool {
+
+/// What was wrong with samples; summed over threads. In a sound render all are zero.
+struct SampleAudit {
+    std::int64_t non_finite = 0;  ///< samples with a NaN or infinite channel, left out whole
+    std::int64_t clamped = 0;     ///< channels above the limit, or below zero, cut to it
+    double clamped_energy = 0;    ///< radiance that the cut took away, summed
+
+    void add(const SampleAudit& other) {
+        non_finite += other.non_finite;
+        clamped += other.clamped;
+        clamped_energy += other.clamped_energy;
+    }
+};
+
+/// A sum or a sample in fixed point.
+using FixedRgb = std::array<std::int64_t, 3>;
+
+/// How radiance becomes an integer.
+struct FixedPoint {
+    int fraction_bits = 0;
+    double limit = 0;  ///< radiance above which a channel is cut: at least twice max_radiance
+
+    /// For up to `spp` samples a pixel, each channel at most max_radiance.
+    static FixedPoint make(std::int64_t spp, double max_radiance);
+
+    [[nodiscard]] double scale() const { return std::ldexp(1.0, fraction_bits); }
+};
+
+/// Turns samples into integers, keeping an account of bad ones. One per thread.
+class SampleConverter {
+  public:
+    explicit SampleConverter(const FixedPoint& fixed) : scale_(fixed.scale()), limit_(fixed.limit) {}
+
+    /// Rounds to nearest. Zero for a sample that is not finite.
+    template <class Scalar>
+    FixedRgb convert(const Vec3<Scalar>& radiance) {
+        FixedRgb fixed{};
+        for (int i = 0; i < 3; ++i) {
+            const double value = static_cast<double>(radiance[i]);
+            if (!(value >= 0 && value <= limit_)) [[unlikely]]
+                return convert_bad(radiance.template cast<double>());
+            fixed[i] = std::llrint(value * scale_);
+        }
+        return fixed;
+    }
+    [[nodiscard]] const SampleAudit& audit() const { return audit_; }
+
+  private:
+    FixedRgb convert_bad(const Eigen::Vector3d& radiance);
+
+    double scale_;
+    double limit_;
+    SampleAudit audit_;
+};
+
+class Framebuffer {
+  public:
+    Framebuffer(std::int64_t width, std::int64_t height, const FixedPoint& fixed);
+
+    [[nodiscard]] std::int64_t width() const { return width_; }
+    [[nodiscard]] std::int64_t height() const { return height_; }
+    [[nodiscard]] const FixedPoint& fixed_point() const { return fixed_; }
+
+    void add(std::int64_t pixel, const FixedRgb& sample) {
+        for (int i = 0; i < 3; ++i) sums_[static_cast<std::size_t>(3 * pixel + i)] += sample[i];
+    }
+    [[nodiscard]] std::span<std::int64_t> sums() { return sums_; }
+    [[nodiscard]] std::span<const std::int64_t> sums() const { return sums_; }
+
+    /// 16 hexadecimal digits over the size, the step and every sum (XXH3).
+    [[nodiscard]] std::string hash() const;
+
+    /// The mean of `sample_count` samples a pixel, linear radiance.
+    [[nodiscard]] Image image(std::int64_t sample_count) const;
+
+  private:
+    std::int64_t width_;
+    std::int64_t height_;
+    FixedPoint fixed_;
+    std::vector<std::int64_t> sums_;
+};
+
+}  // namespace raypool

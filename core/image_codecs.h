@@ -1,0 +1,42 @@
+/// Each image format as functions between pixels and the bytes of a file; image_file.h is the only caller.
+///
+/// They throw std::exceptions that say what is wrong with the bytes, for the caller to put the file's name in front.
+/// Decoders trust nothing in the bytes: dimensions are checked against the limits and, as far as the format allows,
+/// against the number of bytes, before memory is taken for the pixels.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/image.h"
+#include "core/image_file.h"
+
+namespace raypool {
+
+using Bytes = std::vector<std::byte>;
+using BytesView = std::span<const std::byte>;
+
+Bytes encode_png(const Image& image, const ImageAttributes& attributes);
+Image decode_png(BytesView bytes, std::int64_t max_side);
+
+Bytes encode_exr(const Image& image, const ImageAttributes& attributes);
+Image decode_exr(BytesView bytes);
+ImageAttributes decode_exr_attributes(BytesView bytes);
+
+Bytes encode_pfm(const Image& image);
+Image decode_pfm(BytesView bytes);
+
+inline void check_image_size(std::int64_t width, std::int64_t height, std::int64_t max_side) {
+    if (width < 1 || height < 1 || width > max_side || height > max_side || width * height > kMaxImagePixels) {
+        throw std::runtime_error(
+            fmt::format("width and height must be within [1, {}] and at most {} pixels, got {} x {}", max_side,
+                        kMaxImagePixels, width, height));
+    }
+}
+
+}  // namespace raypool

@@ -1,0 +1,47 @@
+/// Image files: PNG, OpenEXR and PFM, written whole or not at all, read without trusting them.
+///
+/// PNG: 8 bits a channel, coded with the curve of sRGB, clamped to [0, 1], NaN as black. Lossy.
+/// EXR: 32-bit floats, ZIP-compressed; one part of scan lines with channels R, G and B (half or float) is read.
+/// PFM: 32-bit floats, bottom row first; written little endian, read in both byte orders. Carries no attributes.
+/// EXR and PFM keep every bit. The bytes of a file depend on the image and the attributes only.
+///
+/// Called by the command and by the scene reader. A file that is absent, broken, or larger than the limits throws an
+/// InputError naming it, before memory is spent on what it only claims to hold. Thread-safe, for different outputs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "core/image.h"
+#include "core/scene.h"
+
+namespace raypool {
+
+inline constexpr std::int64_t kMaxImageSide = 65536;
+inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 30;
+inline constexpr std::int64_t kMaxTextureSide = 16384;
+
+enum class ImageFormat { Png, Exr, Pfm };
+
+/// What an image carries besides pixels, such as its settings and its hash. Names are ASCII with 1 to 79 characters.
+using ImageAttributes = std::map<std::string, std::string>;
+
+/// By the extension, in either case; an InputError for any other than .png, .exr and .pfm.
+ImageFormat image_format(const std::filesystem::path& path);
+
+void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes);
+
+/// PNG samples of 8 or fewer bits, or 16, become linear by the curve of sRGB, or by the exponent in a gAMA chunk that
+/// says otherwise; alpha and colour profiles are ignored. Of an EXR file this is the data window.
+Image read_image(const std::filesystem::path& path);
+
+/// All attributes of type string in the header of an EXR file.
+ImageAttributes read_exr_attributes(const std::filesystem::path& path);
+
+/// A PNG file, as read_image() reads it, of at most kMaxTextureSide on either side.
+std::shared_ptr<const ImageTexels> read_texture(const std::filesystem::path& path);
+
+}  // namespace raypool

@@ -1,0 +1,90 @@
+/// What a scene needs: the features that its kernels must have and its ray records must carry.
+///
+/// Derived from the scene once, by scene_needs(). A kernel takes a SceneNeeds as a template parameter and leaves out
+/// what is false; for a scene that does not need a feature, leaving it out changes no bit of the image.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace raypool {
+
+struct SceneNeeds {
+    bool motion = false;      ///< a sphere moves while the shutter is open: rays carry a time
+    bool defocus = false;     ///< the lens has an area
+    bool flat = false;        ///< quads or planes
+    bool metal = false;       ///< mirrors
+    bool fuzz = false;        ///< mirrors that are not perfect
+    bool dielectric = false;  ///< glass
+    bool emissive = false;    ///< surfaces that shine
+    bool checker = false;     ///< 3-D checkers
+    bool uv = false;          ///< textures that need surface coordinates: uv checkers and images
+
+    bool operator==(const SceneNeeds&) const = default;
+};
+
+/// A feature by name, for listings and for tests that go through all of them.
+struct SceneFeature {
+    const char* name;
+    bool SceneNeeds::*member;
+};
+inline constexpr std::array<SceneFeature, 9> kSceneFeatures{{{"motion", &SceneNeeds::motion},
+                                                             {"defocus", &SceneNeeds::defocus},
+                                                             {"flat", &SceneNeeds::flat},
+                                                             {"metal", &SceneNeeds::metal},
+                                                             {"fuzz", &SceneNeeds::fuzz},
+                                                             {"dielectric", &SceneNeeds::dielectric},
+                                                             {"emissive", &SceneNeeds::emissive},
+                                                             {"checker", &SceneNeeds::checker},
+                                                             {"uv", &SceneNeeds::uv}}};
+
+/// True when code compiled for `a` can render whatever needs `b`.
+constexpr bool covers(const SceneNeeds& a, const SceneNeeds& b) {
+    for (const SceneFeature& feature : kSceneFeatures)
+        if (b.*feature.member && !(a.*feature.member)) return false;
+    return true;
+}
+
+SceneNeeds scene_needs(const Scene& scene);
+
+/// Bytes of a ray record, the state of a path between two segments: origin, direction and throughput, three scalars
+/// each; pixel, sample, primitive left and bounce, 4 bytes each; and a time where shapes move. Defocus, fuzz, glass,
+/// textures and emission need none: they act within a segment.
+constexpr std::size_t ray_record_bytes(const SceneNeeds& needs, std::size_t scalar_bytes) {
+    return 9 * scalar_bytes + 4 * sizeof(std::uint32_t) + (needs.motion ? scalar_bytes : 0);
+}
+
+/// The names of the features needed, in the order of kSceneFeatures.
+std::vector<std::string> feature_names(const SceneNeeds& needs);
+
+inline constexpr SceneNeeds kEverything{true, true, true, true, true, true, true, true, true};
+
+/// The sets of features that the engines are compiled for, smallest first. A scene runs on the first that covers it.
+inline constexpr std::array<SceneNeeds, 4> kCompiledNeeds{{
+    {},
+    {.defocus = true, .metal = true, .fuzz = true, .dielectric = true, .checker = true},
+    {.motion = true, .defocus = true, .metal = true, .fuzz = true, .dielectric = true, .checker = true},
+    kEverything,
+}};
+
+constexpr std::size_t compiled_needs_index(const SceneNeeds& needs) {
+    std::size_t i = 0;
+    while (!covers(kCompiledNeeds[i], needs)) ++i;
+    return i;
+}
+
+/// Calls function.template operator()<compiled needs>() with the first compiled set that covers `needs`.
+template <std::size_t i = 0, class Function>
+auto dispatch_needs(const SceneNeeds& needs, Function&& function) {
+    if constexpr (i + 1 < kCompiledNeeds.size()) {
+        if (!covers(kCompiledNeeds[i], needs)) return dispatch_needs<i + 1>(needs, function);
+    }
+    return function.template operator()<kCompiledNeeds[i]>();
+}
+
+}  // namespace raypool

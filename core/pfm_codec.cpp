@@ -1,0 +1,82 @@
+/// Portable Float Map: "PF", width, height and a scale whose sign tells the byte order, then rows from the bottom up.
+/// Format: Paul Debevec, http://www.pauldebevec.com/Research/HDR/PFM/
+
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "core/image_codecs.h"
+
+namespace raypool {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "PFM files are written as they lie in memory");
+
+/// Takes one word and the single white space after it off the front of `text`.
+std::string_view take_word(std::string_view& text) {
+    constexpr std::size_t kLongestWord = 32;
+    const std::size_t end = text.substr(0, kLongestWord).find_first_of(" \t\r\n");
+    if (end == 0 || end == std::string_view::npos) throw std::runtime_error("not a PFM file: broken header");
+    const std::string_view word = text.substr(0, end);
+    text.remove_prefix(end + 1);
+    return word;
+}
+
+template <class Number>
+Number take_number(std::string_view& text) {
+    const std::string_view word = take_word(text);
+    Number number{};
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc{} || end != word.data() + word.size()) {
+        throw std::runtime_error("not a PFM file: a header holds width, height and scale as numbers");
+    }
+    return number;
+}
+
+float byte_swapped(float value) {
+    return std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(value)));
+}
+
+}  // namespace
+
+Bytes encode_pfm(const Image& image) {
+    const std::string header = fmt::format("PF\n{} {}\n-1.0\n", image.width, image.height);
+    const std::size_t row_bytes = static_cast<std::size_t>(image.width) * 3 * sizeof(float);
+    Bytes bytes(header.size() + row_bytes * static_cast<std::size_t>(image.height));
+    std::memcpy(bytes.data(), header.data(), header.size());
+    std::byte* row = bytes.data() + header.size();
+    for (std::int64_t y = image.height - 1; y >= 0; --y, row += row_bytes) {
+        std::memcpy(row, image.pixel(0, y), row_bytes);
+    }
+    return bytes;
+}
+
+Image decode_pfm(BytesView bytes) {
+    std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (take_word(text) != "PF") throw std::runtime_error("not a PFM file in colour: must begin with PF");
+    const auto width = take_number<std::int64_t>(text);
+    const auto height = take_number<std::int64_t>(text);
+    const auto scale = take_number<double>(text);
+    check_image_size(width, height, kMaxImageSide);
+    if (!std::isfinite(scale) || scale == 0) throw std::runtime_error("the scale must be finite and not 0");
+
+    const std::size_t row_bytes = static_cast<std::size_t>(width) * 3 * sizeof(float);
+    const std::size_t pixel_bytes = row_bytes * static_cast<std::size_t>(height);
+    if (text.size() != pixel_bytes) {
+        throw std::runtime_error(fmt::format("{} x {} pixels must take {} bytes after the header, got {}", width,
+                                             height, pixel_bytes, text.size()));
+    }
+    Image image(width, height);
+    for (std::int64_t y = height - 1; y >= 0; --y, text.remove_prefix(row_bytes)) {
+        std::memcpy(image.pixel(0, y), text.data(), row_bytes);
+    }
+    if (scale > 0) {
+        for (float& value : image.rgb) value = byte_swapped(value);
+    }
+    return image;
+}
+
+}  // namespace raypool

@@ -1,0 +1,319 @@
+/// The number types that the kernels are written over, and the few operations that differ between them.
+///
+/// A kernel is a template over `Real`: float, double, long double, or a SIMD vector of float or double. Every
+/// operation here gives each lane the bits that the scalar operation gives, so a kernel's result does not depend on
+/// how many rays it is asked about at a time. That is what lets two engines make one image.
+///
+/// Idioms: `if (any(mask))` is the branch when Real is a scalar and the skip when it is wide, and select() follows;
+/// literals are Real(2); a fused multiply-add is written mad or nmad and happens nowhere else.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <experimental/simd>
+#include <limits>
+#include <type_traits>
+
+#include "core/simd_x86.h"
+
+namespace raypool {
+
+namespace stdx = std::experimental;
+
+template <class T>
+concept Simd = stdx::is_simd_v<T>;
+template <class T>
+concept SimdMask = stdx::is_simd_mask_v<T>;
+
+/// A vector of N floats or doubles that fills one register.
+template <class Scalar, int N>
+using Wide = stdx::simd<Scalar, stdx::simd_abi::deduce_t<Scalar, N>>;
+
+namespace detail {
+template <class Real>
+struct RealTraits {  // scalars
+    using Scalar = Real;
+    using Mask = bool;
+    using Int = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
+    using Uint32 = std::uint32_t;
+    static constexpr int kLanes = 1;
+};
+template <Simd Real>
+struct RealTraits<Real> {
+    using Scalar = typename Real::value_type;
+    using Mask = typename Real::mask_type;
+    using Int = stdx::rebind_simd_t<typename RealTraits<Scalar>::Int, Real>;
+    using Uint32 = stdx::simd<std::uint32_t, stdx::simd_abi::deduce_t<std::uint32_t, Real::size()>>;
+    static constexpr int kLanes = Real::size();
+};
+}  // namespace detail
+
+template <class Real>
+using ScalarOf = typename detail::RealTraits<Real>::Scalar;
+template <class Real>
+using Mask = typename detail::RealTraits<Real>::Mask;
+/// Signed integers as wide as the real: 32 bits beside float, 64 bits beside double.
+template <class Real>
+using Int = typename detail::RealTraits<Real>::Int;
+/// As many 32-bit unsigned integers as Real has lanes, for random numbers.
+template <class Real>
+using Uint32 = typename detail::RealTraits<Real>::Uint32;
+template <class Real>
+inline constexpr int kLanes = detail::RealTraits<Real>::kLanes;
+
+template <class Real>
+inline constexpr ScalarOf<Real> kInfinity = std::numeric_limits<ScalarOf<Real>>::infinity();
+
+namespace detail {
+template <class Scalar, std::size_t bytes>
+struct Registers;
+template <>
+struct Registers<float, 32> {
+    using Real = __m256;
+    using Integer = __m256i;
+};
+template <>
+struct Registers<double, 32> {
+    using Real = __m256d;
+    using Integer = __m256i;
+};
+#ifdef __AVX512F__
+template <>
+struct Registers<float, 64> {
+    using Real = __m512;
+    using Integer = __m512i;
+};
+template <>
+struct Registers<double, 64> {
+    using Real = __m512d;
+    using Integer = __m512i;
+};
+#endif
+template <Simd V>
+using IntegerRegister = typename Registers<float, sizeof(V)>::Integer;
+template <Simd V>
+using RealRegister = typename Registers<typename V::value_type, sizeof(V)>::Real;
+template <Simd V>
+RAYPOOL_INLINE auto reg(const V& v) {
+    return std::bit_cast<RealRegister<V>>(v);
+}
+/// A mask as its instruction set keeps it: a bit a lane in AVX-512, a register of ones and zeros in AVX2.
+template <SimdMask M>
+RAYPOOL_INLINE auto mask_register(const M& m) {
+    if constexpr (sizeof(M) == 1) {
+        return std::bit_cast<std::uint8_t>(m);
+    } else if constexpr (sizeof(M) == 2) {
+        return std::bit_cast<std::uint16_t>(m);
+    } else {
+        return std::bit_cast<typename Registers<float, sizeof(M)>::Integer>(m);
+    }
+}
+}  // namespace detail
+
+// Masks.
+
+RAYPOOL_INLINE bool any(bool m) {
+    return m;
+}
+RAYPOOL_INLINE bool all(bool m) {
+    return m;
+}
+RAYPOOL_INLINE bool none(bool m) {
+    return !m;
+}
+/// One bit a lane, lane 0 lowest.
+RAYPOOL_INLINE unsigned mask_bits(bool m) {
+    return m ? 1 : 0;
+}
+
+template <SimdMask M>
+RAYPOOL_INLINE unsigned mask_bits(const M& m) {
+    const auto bits = detail::mask_register(m);
+    if constexpr (sizeof(M) <= 2) {
+        return bits;
+    } else if constexpr (M::size() == 8) {
+        return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(bits)));
+    } else {
+        return static_cast<unsigned>(_mm256_movemask_pd(_mm256_castsi256_pd(bits)));
+    }
+}
+template <SimdMask M>
+inline constexpr unsigned kAllBits = (1U << M::size()) - 1;
+template <SimdMask M>
+RAYPOOL_INLINE bool any(const M& m) {
+    return mask_bits(m) != 0;
+}
+template <SimdMask M>
+RAYPOOL_INLINE bool all(const M& m) {
+    return mask_bits(m) == kAllBits<M>;
+}
+template <SimdMask M>
+RAYPOOL_INLINE bool none(const M& m) {
+    return mask_bits(m) == 0;
+}
+
+/// The mask of a comparison of Int<Real> as a mask of Real.
+template <class Real, class M>
+RAYPOOL_INLINE Mask<Real> as_mask(const M& m) {
+    if constexpr (std::same_as<M, bool>) {
+        return Mask<Real>(m);
+    } else {
+        return std::bit_cast<Mask<Real>>(m);
+    }
+}
+
+// Choice.
+
+template <class T>
+requires std::is_arithmetic_v<T> RAYPOOL_INLINE T select(bool m, T yes, T no) {
+    return m ? yes : no;
+}
+template <SimdMask M, Simd V>
+RAYPOOL_INLINE V select(const M& m, const V& yes, const V& no) {
+    using Register = detail::IntegerRegister<V>;
+    return std::bit_cast<V>(x86::blend<sizeof(typename V::value_type)>(
+        detail::mask_register(m), std::bit_cast<Register>(yes), std::bit_cast<Register>(no)));
+}
+
+// Arithmetic.
+
+template <std::floating_point T>
+RAYPOOL_INLINE T mad(T a, T b, T c) {
+    return std::fma(a, b, c);
+}
+template <std::floating_point T>
+RAYPOOL_INLINE T nmad(T a, T b, T c) {
+    return std::fma(-a, b, c);
+}
+template <std::floating_point T>
+RAYPOOL_INLINE T min(T a, T b) {
+    return a < b ? a : b;
+}
+template <std::floating_point T>
+RAYPOOL_INLINE T max(T a, T b) {
+    return a > b ? a : b;
+}
+template <std::floating_point T>
+RAYPOOL_INLINE T sqrt(T a) {
+    return std::sqrt(a);
+}
+template <std::floating_point T>
+RAYPOOL_INLINE T floor(T a) {
+    return std::floor(a);
+}
+template <std::floating_point T>
+RAYPOOL_INLINE T abs(T a) {
+    return std::fabs(a);
+}
+template <std::floating_point T>
+RAYPOOL_INLINE T copysign(T magnitude, T sign) {
+    return std::copysign(magnitude, sign);
+}
+
+/// a b + c, rounded once.
+template <Simd V>
+RAYPOOL_INLINE V mad(const V& a, const V& b, const V& c) {
+    return std::bit_cast<V>(x86::fmadd(detail::reg(a), detail::reg(b), detail::reg(c)));
+}
+/// c - a b, rounded once.
+template <Simd V>
+RAYPOOL_INLINE V nmad(const V& a, const V& b, const V& c) {
+    return std::bit_cast<V>(x86::fnmadd(detail::reg(a), detail::reg(b), detail::reg(c)));
+}
+/// a < b ? a : b, so b when either is NaN.
+template <Simd V>
+RAYPOOL_INLINE V min(const V& a, const V& b) {
+    return std::bit_cast<V>(x86::min(detail::reg(a), detail::reg(b)));
+}
+/// a > b ? a : b, so b when either is NaN.
+template <Simd V>
+RAYPOOL_INLINE V max(const V& a, const V& b) {
+    return std::bit_cast<V>(x86::max(detail::reg(a), detail::reg(b)));
+}
+template <Simd V>
+RAYPOOL_INLINE V sqrt(const V& a) {
+    return std::bit_cast<V>(x86::sqrt(detail::reg(a)));
+}
+template <Simd V>
+RAYPOOL_INLINE V floor(const V& a) {
+    return std::bit_cast<V>(x86::floor(detail::reg(a)));
+}
+template <Simd V>
+RAYPOOL_INLINE V abs(const V& a) {
+    using Register = detail::IntegerRegister<V>;
+    return std::bit_cast<V>(x86::bit_and(std::bit_cast<Register>(a), ~std::bit_cast<Register>(V(-0.0F))));
+}
+template <Simd V>
+RAYPOOL_INLINE V copysign(const V& magnitude, const V& sign) {
+    using Register = detail::IntegerRegister<V>;
+    const Register sign_bit = std::bit_cast<Register>(V(-0.0F));
+    return std::bit_cast<V>(x86::bit_or(x86::bit_and(std::bit_cast<Register>(magnitude), ~sign_bit),
+                                        x86::bit_and(std::bit_cast<Register>(sign), sign_bit)));
+}
+
+// Conversion. Values must be in range of the target; callers clamp first.
+
+/// Rounds towards zero.
+template <class Real>
+RAYPOOL_INLINE Int<Real> to_int(const Real& a) {
+    if constexpr (Simd<Real>) {
+        return stdx::static_simd_cast<Int<Real>>(a);
+    } else {
+        return static_cast<Int<Real>>(a);
+    }
+}
+template <class Real>
+RAYPOOL_INLINE Real to_real(const Int<Real>& a) {
+    if constexpr (Simd<Real>) {
+        return stdx::static_simd_cast<Real>(a);
+    } else {
+        return static_cast<Real>(a);
+    }
+}
+/// The real value of unsigned integers below 2^31.
+template <class Real>
+RAYPOOL_INLINE Real from_uint32(const Uint32<Real>& a) {
+    if constexpr (Simd<Real>) {
+        using Signed = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
+        return stdx::static_simd_cast<Real>(stdx::static_simd_cast<Signed>(a));
+    } else {
+        return static_cast<Real>(static_cast<std::int32_t>(a));
+    }
+}
+
+// Lanes and tables.
+
+template <class V>
+RAYPOOL_INLINE auto lane(const V& v, int i) {
+    if constexpr (Simd<V>) {
+        return static_cast<typename V::value_type>(v[i]);
+    } else {
+        return v;
+    }
+}
+
+/// Row `row_id[lane]` of a table whose rows are `stride` scalars long: column[k] = table[row_id * stride + first + k].
+/// `count` is a multiple of four; every row id, also of lanes that the caller will ignore, must be in the table.
+template <int count, class Real>
+RAYPOOL_INLINE void load_rows(const ScalarOf<Real>* table, int stride, const Int<Real>& row_id, Real* column) {
+    static_assert(count % 4 == 0);
+    if constexpr (Simd<Real> && std::same_as<ScalarOf<Real>, float>) {
+        alignas(64) std::int32_t ids[kLanes<Real>];
+        row_id.copy_to(ids, stdx::vector_aligned);
+        for (int first = 0; first < count; first += 4) {
+            const float* rows[kLanes<Real>];
+            for (int i = 0; i < kLanes<Real>; ++i) rows[i] = table + std::int64_t{ids[i]} * stride + first;
+            detail::RealRegister<Real> block[4];
+            x86::transpose_rows(rows, block);
+            for (int k = 0; k < 4; ++k) column[first + k] = std::bit_cast<Real>(block[k]);
+        }
+    } else if constexpr (Simd<Real>) {
+        for (int k = 0; k < count; ++k) column[k] = Real([&](auto i) { return table[lane(row_id, i) * stride + k]; });
+    } else {
+        for (int k = 0; k < count; ++k) column[k] = table[row_id * stride + k];
+    }
+}
+
+}  // namespace raypool

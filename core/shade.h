@@ -1,0 +1,200 @@
+/// What happens to a ray at the end of its segment: it leaves for the sky, meets an emitter, or is scattered.
+///
+/// Called by every engine, one ray or a register of rays at a time, with the same bits per ray either way. A path is
+/// carried on by value: throughput is multiplied down the path in one order, so that engines agree.
+#pragma once
+
+#include "core/compiled_scene.h"
+#include "core/materials.h"
+#include "core/shapes.h"
+#include "core/textures.h"
+
+namespace raypool {
+
+/// Which path this is; with the bounce it is the key of its random numbers.
+template <class Real>
+struct PathKey {
+    Uint32<Real> pixel;  ///< row * width + column
+    Uint32<Real> sample;
+};
+
+/// Radiance from the direction of a ray that met nothing.
+template <class Real>
+RAYPOOL_INLINE Vec3<Real> sky_radiance(const Sky<ScalarOf<Real>>& sky, const Vec3<Real>& direction) {
+    return along<Real>(broadcast<Real>(sky.middle), direction[1], broadcast<Real>(sky.slope));
+}
+
+/// A point on a surface, seen along a ray.
+template <class Real>
+struct SurfacePoint {
+    Vec3<Real> position;
+    Vec3<Real> normal;    ///< unit, on the side that the ray arrives from
+    Vec3<Real> outward;   ///< unit, geometric: away from a sphere's centre
+    Mask<Real> is_front;  ///< the ray arrives from the outward side
+};
+
+/// `row` is the primitive's SurfaceRow, transposed. A hit on a sphere is put back onto the sphere where the distance
+/// travelled, and with it the rounding error, is larger than the radius; on a large sphere that would do harm.
+template <SceneNeeds needs, class Real>
+RAYPOOL_INLINE SurfacePoint<Real> surface_point(const Ray<Real>& ray, const Real& t, const Real* row) {
+    using Row = SurfaceRow<ScalarOf<Real>>;
+    const Vec3<Real> p = along<Real>(ray.origin, t, ray.direction);
+    const Real radius = row[Row::kRadius];
+    Vec3<Real> center = vec3<Real>(row[Row::kCenter], row[Row::kCenter + 1], row[Row::kCenter + 2]);
+    const Vec3<Real> stored = center;  // of a quad or plane this is the normal
+    if constexpr (needs.motion)
+        center = center_at<Real>(center, vec3<Real>(row[Row::kMotion], row[Row::kMotion + 1], row[Row::kMotion + 2]),
+                                 ray.time);
+
+    SurfacePoint<Real> point;
+    point.outward = unit<Real>(vec3<Real>(p[0] - center[0], p[1] - center[1], p[2] - center[2]));
+    point.position = select<Real>(radius < t, along<Real>(center, radius, point.outward), p);
+    if constexpr (needs.flat) {
+        const Mask<Real> is_flat = radius == Real(0);
+        point.outward = select<Real>(is_flat, stored, point.outward);
+        point.position = select<Real>(is_flat, p, point.position);
+    }
+    point.is_front = dot<Real>(ray.direction, point.outward) < Real(0);
+    point.normal = select<Real>(point.is_front, point.outward, -point.outward);
+    return point;
+}
+
+/// The row's colour, or what its texture makes of it, where `is_wanted`.
+template <SceneNeeds needs, class Real>
+RAYPOOL_INLINE Vec3<Real> surface_colour(const CompiledScene<ScalarOf<Real>>& scene, const SurfacePoint<Real>& point,
+                                         const Real* row, const Mask<Real>& is_wanted) {
+    using S = ScalarOf<Real>;
+    using Row = SurfaceRow<S>;
+    Vec3<Real> colour = vec3<Real>(row[Row::kColour], row[Row::kColour + 1], row[Row::kColour + 2]);
+    if constexpr (!needs.checker && !needs.uv) return colour;
+
+    const auto is_kind = [&](Texture::Kind kind) { return is_wanted && row[Row::kTexture] == Real(S(kind)); };
+    const Mask<Real> is_checker_3d = is_kind(Texture::Kind::Checker3d);
+    const Mask<Real> is_checker_uv = needs.uv ? is_kind(Texture::Kind::CheckerUv) : Mask<Real>(false);
+    const Mask<Real> is_image = needs.uv ? is_kind(Texture::Kind::Image) : Mask<Real>(false);
+
+    std::array<Real, 2> uv{Real(0), Real(0)};
+    if constexpr (needs.uv) {
+        if (any(is_checker_uv || is_image)) {
+            uv = sphere_coordinates<Real>(point.outward);
+            if constexpr (needs.flat) {
+                const Mask<Real> is_flat = row[Row::kRadius] == Real(0);
+                if (any(is_flat)) {
+                    Real flat[FlatRow<S>::kColumns];
+                    load_rows<FlatRow<S>::kColumns, Real>(scene.flats.data()->value, FlatRow<S>::kColumns,
+                                                          to_int<Real>(row[Row::kFlatRow]), flat);
+                    const auto part = [&](int first) {
+                        return vec3<Real>(flat[first], flat[first + 1], flat[first + 2]);
+                    };
+                    const std::array<Real, 2> in_plane = plane_coordinates<Real>(
+                        point.position, part(FlatRow<S>::kCorner), part(FlatRow<S>::kDualU), part(FlatRow<S>::kDualV));
+                    uv = {select(is_flat, in_plane[0], uv[0]), select(is_flat, in_plane[1], uv[1])};
+                }
+            }
+        }
+    }
+    if (any(is_checker_3d || is_checker_uv)) {
+        using Tex = TextureRow<S>;
+        Real texture[Tex::kColumns];
+        load_rows<Tex::kColumns, Real>(scene.textures.data()->value, Tex::kColumns, to_int<Real>(row[Row::kTextureRow]),
+                                       texture);
+        const Split<Real> scale{texture[Tex::kScaleHigh], texture[Tex::kScaleLow]};
+        const Vec3<Real> odd = vec3<Real>(texture[Tex::kOdd], texture[Tex::kOdd + 1], texture[Tex::kOdd + 2]);
+        Vec3<Real> at;
+        for (int i = 0; i < 3; ++i) at[i] = point.position[i] + texture[Tex::kOffset + i];
+        if constexpr (needs.uv) at = select<Real>(is_checker_uv, vec3<Real>(uv[0], uv[1], Real(0)), at);
+        const Mask<Real> is_odd = (is_checker_3d || is_checker_uv) && is_odd_cell<Real>(at, scale);
+        colour = select<Real>(is_odd, odd, colour);
+    }
+    if constexpr (needs.uv) {
+        for (unsigned bits = mask_bits(is_image); bits != 0; bits &= bits - 1) {
+            const int i = std::countr_zero(bits);
+            const auto& image = scene.images[static_cast<std::size_t>(lane(row[Row::kTextureRow], i))];
+            const Vec3<S> texel = image_colour<S>(image, lane(uv[0], i), lane(uv[1], i));
+            for (int k = 0; k < 3; ++k) {
+                if constexpr (Simd<Real>) {
+                    colour[k][i] = texel[k];
+                } else {
+                    colour[k] = texel[k];
+                }
+            }
+        }
+    }
+    return colour;
+}
+
+/// A path after a hit.
+template <class Real>
+struct Scattered {
+    Vec3<Real> origin;
+    Vec3<Real> direction;
+    Vec3<Real> throughput;  ///< where is_emitter: the radiance that the path brings home
+    Mask<Real> is_alive;    ///< the path goes on
+    Mask<Real> is_emitter;  ///< the path ends on an emitter
+};
+
+/// Scatters rays that hit primitive `primitive_id` (valid in every lane, also those the caller ignores) at distance t.
+/// `bounce` counts hits from 0. A path that can carry nothing any more is not alive.
+template <SceneNeeds needs, class Real>
+RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scene, const Ray<Real>& ray, const Real& t,
+                                       const Int<Real>& primitive_id, const Vec3<Real>& throughput,
+                                       const PathKey<Real>& key, const Uint32<Real>& bounce, const RandomSeed& seed) {
+    using S = ScalarOf<Real>;
+    using Row = SurfaceRow<S>;
+    Real row[Row::kColumns];
+    load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, primitive_id, row);
+    const auto is_material = [&](Material::Kind kind) { return row[Row::kMaterial] == Real(S(kind)); };
+
+    const SurfacePoint<Real> point = surface_point<needs, Real>(ray, t, row);
+    const std::array<Real, 4> random =
+        random_block<Real>(key.pixel, key.sample, bounce + Uint32<Real>(random_block_id::kBounce), seed);
+
+    Scattered<Real> out;
+    out.origin = point.position;
+    out.is_emitter = needs.emissive ? is_material(Material::Kind::Emissive) : Mask<Real>(false);
+    const Mask<Real> is_glass = needs.dielectric ? is_material(Material::Kind::Dielectric) : Mask<Real>(false);
+    const Mask<Real> is_metal = needs.metal ? is_material(Material::Kind::Metal) : Mask<Real>(false);
+
+    // Colour: of all but glass.
+    const Vec3<Real> colour = surface_colour<needs, Real>(scene, point, row, !is_glass);
+    for (int i = 0; i < 3; ++i) out.throughput[i] = select(is_glass, throughput[i], throughput[i] * colour[i]);
+
+    // Direction, by material.
+    out.direction = point.normal;
+    Mask<Real> is_absorbed(false);
+    const Mask<Real> is_rough = needs.fuzz ? is_metal && row[Row::kParameter] > Real(0) : Mask<Real>(false);
+    const Mask<Real> is_diffuse = !(is_glass || is_metal || out.is_emitter);
+    Vec3<Real> on_sphere = point.normal;
+    if (any(is_diffuse || is_rough)) on_sphere = unit_sphere<Real>(random[0], random[1]);
+    if (any(is_diffuse)) out.direction = diffuse_direction<Real>(point.normal, on_sphere);
+    if constexpr (needs.metal || needs.dielectric) {
+        if (any(is_metal || is_glass)) {
+            const Vec3<Real> mirrored = mirror_direction<Real>(ray.direction, point.normal);
+            Vec3<Real> direction = mirrored;
+            if constexpr (needs.fuzz) {
+                if (any(is_rough)) {
+                    direction = select<Real>(is_rough, fuzzy_direction<Real>(mirrored, row[Row::kParameter], on_sphere),
+                                             direction);
+                }
+            }
+            if constexpr (needs.metal) is_absorbed = is_metal && dot<Real>(direction, point.normal) <= Real(0);
+            if constexpr (needs.dielectric) {
+                if (any(is_glass)) {
+                    const Real ior = row[Row::kParameter];
+                    const Real eta = select(point.is_front, Real(1) / ior, ior);
+                    const DielectricSplit<Real> split = dielectric_split<Real>(ray.direction, point.normal, eta);
+                    const Mask<Real> is_refracted = is_glass && random[2] >= split.reflectance;
+                    direction = select<Real>(is_refracted, split.refracted, direction);
+                }
+            }
+            out.direction = select<Real>(is_metal || is_glass, direction, out.direction);
+        }
+    }
+
+    const Mask<Real> carries_light =
+        out.throughput[0] > Real(0) || out.throughput[1] > Real(0) || out.throughput[2] > Real(0);
+    out.is_alive = carries_light && !(is_absorbed || out.is_emitter);
+    return out;
+}
+
+}  // namespace raypool

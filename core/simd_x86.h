@@ -1,0 +1,166 @@
+/// What depends on the instruction set: one overload a register type, for AVX2 with FMA (x86-64-v3) and AVX-512.
+///
+/// Only core/real.h calls these. Minimum and maximum are those of the hardware, `a < b ? a : b` and `a > b ? a : b`,
+/// so that a scalar comparison gives the same bits, NaN and signed zeros included. blend() takes `yes` where the mask
+/// is set. std::experimental's own where(), fma, min and max are not used: they are miscompiled by clang 14 with
+/// AVX-512, fall apart into scalar calls, or differ from the scalar operation.
+#pragma once
+
+#include <immintrin.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#if !defined(__AVX2__) || !defined(__FMA__)
+#error "raypool needs AVX2 and FMA: build with RAYPOOL_ARCH=native or x86-64-v3"
+#endif
+
+#define RAYPOOL_INLINE [[gnu::always_inline]] inline
+
+namespace raypool::x86 {
+
+RAYPOOL_INLINE __m256 fmadd(__m256 a, __m256 b, __m256 c) {
+    return _mm256_fmadd_ps(a, b, c);
+}
+RAYPOOL_INLINE __m256d fmadd(__m256d a, __m256d b, __m256d c) {
+    return _mm256_fmadd_pd(a, b, c);
+}
+RAYPOOL_INLINE __m256 fnmadd(__m256 a, __m256 b, __m256 c) {
+    return _mm256_fnmadd_ps(a, b, c);
+}
+RAYPOOL_INLINE __m256d fnmadd(__m256d a, __m256d b, __m256d c) {
+    return _mm256_fnmadd_pd(a, b, c);
+}
+RAYPOOL_INLINE __m256 min(__m256 a, __m256 b) {
+    return _mm256_min_ps(a, b);
+}
+RAYPOOL_INLINE __m256d min(__m256d a, __m256d b) {
+    return _mm256_min_pd(a, b);
+}
+RAYPOOL_INLINE __m256 max(__m256 a, __m256 b) {
+    return _mm256_max_ps(a, b);
+}
+RAYPOOL_INLINE __m256d max(__m256d a, __m256d b) {
+    return _mm256_max_pd(a, b);
+}
+RAYPOOL_INLINE __m256 sqrt(__m256 a) {
+    return _mm256_sqrt_ps(a);
+}
+RAYPOOL_INLINE __m256d sqrt(__m256d a) {
+    return _mm256_sqrt_pd(a);
+}
+RAYPOOL_INLINE __m256 floor(__m256 a) {
+    return _mm256_floor_ps(a);
+}
+RAYPOOL_INLINE __m256d floor(__m256d a) {
+    return _mm256_floor_pd(a);
+}
+RAYPOOL_INLINE __m256i bit_and(__m256i a, __m256i b) {
+    return _mm256_and_si256(a, b);
+}
+RAYPOOL_INLINE __m256i bit_or(__m256i a, __m256i b) {
+    return _mm256_or_si256(a, b);
+}
+
+#ifdef __AVX512F__
+RAYPOOL_INLINE __m512 fmadd(__m512 a, __m512 b, __m512 c) {
+    return _mm512_fmadd_ps(a, b, c);
+}
+RAYPOOL_INLINE __m512d fmadd(__m512d a, __m512d b, __m512d c) {
+    return _mm512_fmadd_pd(a, b, c);
+}
+RAYPOOL_INLINE __m512 fnmadd(__m512 a, __m512 b, __m512 c) {
+    return _mm512_fnmadd_ps(a, b, c);
+}
+RAYPOOL_INLINE __m512d fnmadd(__m512d a, __m512d b, __m512d c) {
+    return _mm512_fnmadd_pd(a, b, c);
+}
+RAYPOOL_INLINE __m512 min(__m512 a, __m512 b) {
+    return _mm512_min_ps(a, b);
+}
+RAYPOOL_INLINE __m512d min(__m512d a, __m512d b) {
+    return _mm512_min_pd(a, b);
+}
+RAYPOOL_INLINE __m512 max(__m512 a, __m512 b) {
+    return _mm512_max_ps(a, b);
+}
+RAYPOOL_INLINE __m512d max(__m512d a, __m512d b) {
+    return _mm512_max_pd(a, b);
+}
+RAYPOOL_INLINE __m512 sqrt(__m512 a) {
+    return _mm512_sqrt_ps(a);
+}
+RAYPOOL_INLINE __m512d sqrt(__m512d a) {
+    return _mm512_sqrt_pd(a);
+}
+RAYPOOL_INLINE __m512 floor(__m512 a) {
+    return _mm512_roundscale_ps(a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+}
+RAYPOOL_INLINE __m512d floor(__m512d a) {
+    return _mm512_roundscale_pd(a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+}
+RAYPOOL_INLINE __m512i bit_and(__m512i a, __m512i b) {
+    return _mm512_and_si512(a, b);
+}
+RAYPOOL_INLINE __m512i bit_or(__m512i a, __m512i b) {
+    return _mm512_or_si512(a, b);
+}
+#endif
+
+/// Lanes of `element_size` bytes: `yes` where the mask is set, else `no`.
+#ifdef __AVX512VL__
+template <std::size_t element_size>
+RAYPOOL_INLINE __m256i blend(std::uint8_t mask, __m256i yes, __m256i no) {
+    if constexpr (element_size == 4) return _mm256_mask_blend_epi32(mask, no, yes);
+    if constexpr (element_size == 8) return _mm256_mask_blend_epi64(mask, no, yes);
+}
+template <std::size_t element_size>
+RAYPOOL_INLINE __m512i blend(std::uint16_t mask, __m512i yes, __m512i no) {
+    return _mm512_mask_blend_epi32(mask, no, yes);
+}
+template <std::size_t element_size>
+RAYPOOL_INLINE __m512i blend(std::uint8_t mask, __m512i yes, __m512i no) {
+    return _mm512_mask_blend_epi64(mask, no, yes);
+}
+#else
+template <std::size_t element_size>
+RAYPOOL_INLINE __m256i blend(__m256i mask, __m256i yes, __m256i no) {
+    return _mm256_blendv_epi8(no, yes, mask);
+}
+#endif
+
+/// Four consecutive floats from each of 8 or 16 places: column k of the result holds the k-th float of every place.
+RAYPOOL_INLINE void transpose_rows(const float* const (&row)[8], __m256 (&column)[4]) {
+    const auto pair = [](const float* low, const float* high) {
+        return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(low)), _mm_loadu_ps(high), 1);
+    };
+    const __m256 r0 = pair(row[0], row[4]), r1 = pair(row[1], row[5]);
+    const __m256 r2 = pair(row[2], row[6]), r3 = pair(row[3], row[7]);
+    const __m256 t0 = _mm256_unpacklo_ps(r0, r1), t1 = _mm256_unpackhi_ps(r0, r1);
+    const __m256 t2 = _mm256_unpacklo_ps(r2, r3), t3 = _mm256_unpackhi_ps(r2, r3);
+    column[0] = _mm256_shuffle_ps(t0, t2, 0x44);
+    column[1] = _mm256_shuffle_ps(t0, t2, 0xee);
+    column[2] = _mm256_shuffle_ps(t1, t3, 0x44);
+    column[3] = _mm256_shuffle_ps(t1, t3, 0xee);
+}
+
+#ifdef __AVX512F__
+RAYPOOL_INLINE void transpose_rows(const float* const (&row)[16], __m512 (&column)[4]) {
+    const auto quad = [](const float* a, const float* b, const float* c, const float* d) {
+        __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(a));
+        r = _mm512_insertf32x4(r, _mm_loadu_ps(b), 1);
+        r = _mm512_insertf32x4(r, _mm_loadu_ps(c), 2);
+        return _mm512_insertf32x4(r, _mm_loadu_ps(d), 3);
+    };
+    const __m512 r0 = quad(row[0], row[4], row[8], row[12]), r1 = quad(row[1], row[5], row[9], row[13]);
+    const __m512 r2 = quad(row[2], row[6], row[10], row[14]), r3 = quad(row[3], row[7], row[11], row[15]);
+    const __m512 t0 = _mm512_unpacklo_ps(r0, r1), t1 = _mm512_unpackhi_ps(r0, r1);
+    const __m512 t2 = _mm512_unpacklo_ps(r2, r3), t3 = _mm512_unpackhi_ps(r2, r3);
+    column[0] = _mm512_shuffle_ps(t0, t2, 0x44);
+    column[1] = _mm512_shuffle_ps(t0, t2, 0xee);
+    column[2] = _mm512_shuffle_ps(t1, t3, 0x44);
+    column[3] = _mm512_shuffle_ps(t1, t3, 0xee);
+}
+#endif
+
+}  // namespace raypool::x86

@@ -1,0 +1,79 @@
+/// Colours that vary over a surface: checkers in space, checkers in surface coordinates, and images.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "core/sampling.h"
+
+namespace raypool {
+
+/// A number and what its Scalar could not hold of it, for products that must land in the right cell far from the
+/// origin.
+template <class Real>
+struct Split {
+    Real high;
+    Real low;
+};
+
+/// Whether the whole number below x * scale is odd, as 0 or 1, for any |x * scale| < 2^47 in float: the product's
+/// rounding error is carried along, so the answer does not degrade with distance as floor(x * scale) does.
+template <class Real>
+RAYPOOL_INLINE Real cell_parity(const Real& x, const Split<Real>& scale) {
+    const Real high = x * scale.high;
+    const Real low = mad<Real>(x, scale.low, mad<Real>(x, scale.high, -high));
+    const Real cell = floor(high);
+    const Real carry = floor((high - cell) + low);
+    const auto parity = [](const Real& a) { return nmad<Real>(Real(2), floor(a * Real(0.5F)), a); };
+    return parity(parity(cell) + parity(carry));
+}
+
+/// True where the cell of a 3-D checker has an odd sum of indices.
+template <class Real>
+RAYPOOL_INLINE Mask<Real> is_odd_cell(const Vec3<Real>& p, const Split<Real>& scale) {
+    const Real sum = cell_parity<Real>(p[0], scale) + cell_parity<Real>(p[1], scale) + cell_parity<Real>(p[2], scale);
+    return sum == Real(1) || sum == Real(3);
+}
+
+/// Surface coordinates of a sphere at its unit outward normal: u once around the y axis from -x, v from the pole at -y
+/// (0) to that at +y (1).
+template <class Real>
+RAYPOOL_INLINE std::array<Real, 2> sphere_coordinates(const Vec3<Real>& n) {
+    const Real around = turn_of_angle<Real>(-n[2], n[0]) + Real(0.5F);
+    const Real u = select(around >= Real(1), around - Real(1), around);
+    const Real v = Real(2) * turn_of_angle<Real>(sqrt(mad<Real>(n[0], n[0], n[2] * n[2])), -n[1]);
+    return {u, v};
+}
+
+/// An image in the compiled scene's texel table: rows from the top, four scalars a texel (r, g, b, unused).
+template <class Scalar>
+struct ImageView {
+    const Scalar* texels = nullptr;
+    std::int32_t width = 0;
+    std::int32_t height = 0;
+};
+
+/// Bilinear lookup, v upward, edges clamped. One lane at a time: images are rare, and their memory is the cost.
+template <class Scalar>
+Vec3<Scalar> image_colour(const ImageView<Scalar>& image, Scalar u, Scalar v) {
+    const auto place = [](Scalar at, std::int32_t size) {
+        const Scalar x = max(min(at * Scalar(size) - Scalar(0.5F), Scalar(size - 1)), Scalar(0));
+        const auto first = static_cast<std::int32_t>(x);
+        return std::pair{first, x - Scalar(first)};
+    };
+    const auto [column, s] = place(u, image.width);
+    const auto [row, t] = place(Scalar(1) - v, image.height);
+    const auto texel = [&](std::int32_t c, std::int32_t r) {
+        const Scalar* p = image.texels + 4 * (std::int64_t{std::min(r, image.height - 1)} * image.width +
+                                              std::min(c, image.width - 1));
+        return vec3<Scalar>(p[0], p[1], p[2]);
+    };
+    const auto mix = [](const Vec3<Scalar>& a, const Vec3<Scalar>& b, Scalar w) {
+        return vec3<Scalar>(mad(w, b[0] - a[0], a[0]), mad(w, b[1] - a[1], a[1]), mad(w, b[2] - a[2], a[2]));
+    };
+    return mix(mix(texel(column, row), texel(column + 1, row), s),
+               mix(texel(column, row + 1), texel(column + 1, row + 1), s), t);
+}
+
+}  // namespace raypool

@@ -1,0 +1,211 @@
+/// The closest hit of one ray: the scene's large shapes, then the trees, a register of boxes or shapes at a time.
+///
+/// Called by whatever traces rays one by one. Ties go to the smaller primitive id. `Work` counts what was tested:
+/// WorkCount does, NoWorkCount costs nothing.
+#pragma once
+
+#include <cstdint>
+
+#include "core/compiled_scene.h"
+#include "core/shapes.h"
+
+namespace raypool {
+
+struct WorkCount {
+    std::int64_t box_tests = 0;        ///< children of tree nodes, one by one
+    std::int64_t primitive_tests = 0;  ///< shapes, one by one
+
+    template <class Scalar, int width>
+    void count(const WideNode<Scalar, width>& node) {
+        for (int i = 0; i < width; ++i) box_tests += node.bounds[0][0][i] <= node.bounds[0][1][i] ? 1 : 0;
+    }
+    template <class Block>
+    void count(const Block& block) {
+        for (const std::int32_t id : block.id) primitive_tests += id != kNoPrimitive ? 1 : 0;
+    }
+};
+
+struct NoWorkCount {
+    static constexpr std::int64_t box_tests = 0;
+    static constexpr std::int64_t primitive_tests = 0;
+    RAYPOOL_INLINE void count(const auto&) {}
+};
+
+/// Deepest tree: 40 levels of heuristic splits and 24 of halves (bvh.cpp), each leaving width - 1 nodes behind.
+template <int width>
+inline constexpr int kTraversalStack = (40 + 24 + 1) * (width - 1) + 1;
+
+/// One ray in every lane, with what the box test and the shapes need of it.
+template <class Real>
+struct SpreadRay {
+    Vec3<Real> origin;
+    Vec3<Real> direction;
+    Real time;
+    RayInverse<Real> inverse;
+    int sign[3];  ///< of the direction: 1 where negative, so that bounds[axis][sign] is the near side
+    std::int32_t leaving_id;
+
+    RAYPOOL_INLINE SpreadRay(const Ray<ScalarOf<Real>>& ray, std::int32_t leaving)
+        : origin(broadcast<Real>(ray.origin)),
+          direction(broadcast<Real>(ray.direction)),
+          time(ray.time),
+          leaving_id(leaving) {
+        const RayInverse<ScalarOf<Real>> scalar = ray_inverse<ScalarOf<Real>>(ray.direction);
+        for (int i = 0; i < 3; ++i) {
+            inverse.near_scale[i] = Real(scalar.near_scale[i]);
+            inverse.far_scale[i] = Real(scalar.far_scale[i]);
+            inverse.is_negative[i] = Mask<Real>(scalar.is_negative[i]);
+            sign[i] = scalar.is_negative[i] ? 1 : 0;
+        }
+    }
+};
+
+namespace detail {
+
+template <class Real>
+RAYPOOL_INLINE Real load(const ScalarOf<Real>* from) {
+    return Real(from, stdx::vector_aligned);
+}
+template <class Real>
+RAYPOOL_INLINE Vec3<Real> load(const ScalarOf<Real> (&from)[3][kLanes<Real>]) {
+    return vec3<Real>(load<Real>(from[0]), load<Real>(from[1]), load<Real>(from[2]));
+}
+
+template <class Real>
+RAYPOOL_INLINE Mask<Real> is_leaving(const std::int32_t* id, std::int32_t leaving_id) {
+    using Ids = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
+    const Ids ids(id, stdx::vector_aligned);
+    return as_mask<Real>(stdx::static_simd_cast<Int<Real>>(ids) == Int<Real>(leaving_id));
+}
+
+/// Takes the closest of the lanes in `bits`.
+template <class Real>
+RAYPOOL_INLINE void keep_closest(const Real& t, const std::int32_t* id, unsigned bits, Hit<ScalarOf<Real>>& hit) {
+    alignas(64) ScalarOf<Real> distance[kLanes<Real>];
+    t.copy_to(distance, stdx::vector_aligned);
+    for (; bits != 0; bits &= bits - 1) {
+        const int i = std::countr_zero(bits);
+        const bool is_tie_won = distance[i] == hit.t && id[i] < hit.primitive_id;
+        if (distance[i] < hit.t || is_tie_won) {
+            hit.t = distance[i];
+            hit.primitive_id = id[i];
+        }
+    }
+}
+
+enum class InBox : bool { No, Yes };  ///< whether the primitives' boxes are in a tree and so limit their hits
+
+template <SceneNeeds needs, InBox in_box, class Real, class Block>
+requires requires(Block b) {
+    b.radius;
+}
+RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& ray, Hit<ScalarOf<Real>>& hit) {
+    Vec3<Real> center = load<Real>(block.center);
+    if constexpr (needs.motion) center = center_at<Real>(center, load<Real>(block.motion), ray.time);
+    const Real t = sphere_distance<Real>(ray.origin, ray.direction, center, load<Real>(block.radius),
+                                         is_leaving<Real>(block.id, ray.leaving_id));
+    Mask<Real> is_closer = t <= Real(hit.t) && t < Real(kInfinity<Real>);
+    if (none(is_closer)) return;
+    if constexpr (in_box == InBox::Yes) {
+        const Real r = load<Real>(block.padded_radius);
+        const Vec3<Real> low = vec3<Real>(center[0] - r, center[1] - r, center[2] - r);
+        const Vec3<Real> high = vec3<Real>(center[0] + r, center[1] + r, center[2] + r);
+        is_closer = is_closer && is_inside_box<Real>(low, high, ray.origin, ray.inverse, t);
+    }
+    keep_closest<Real>(t, block.id, mask_bits(is_closer), hit);
+}
+
+template <SceneNeeds needs, InBox in_box, class Real, class Block>
+requires requires(Block b) {
+    b.dual_u;
+}
+RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& ray, Hit<ScalarOf<Real>>& hit) {
+    const Mask<Real> leaving = is_leaving<Real>(block.id, ray.leaving_id);
+    const Vec3<Real> corner = load<Real>(block.corner);
+    const Vec3<Real> normal = load<Real>(block.normal);
+    if constexpr (in_box == InBox::No) {
+        const Real t = plane_distance<Real>(ray.origin, ray.direction, corner, normal, leaving);
+        keep_closest<Real>(t, block.id, mask_bits(t <= Real(hit.t) && t < Real(kInfinity<Real>)), hit);
+    } else {
+        const Real t = quad_distance<Real>(ray.origin, ray.direction, corner, normal, load<Real>(block.dual_u),
+                                           load<Real>(block.dual_v), leaving);
+        const Mask<Real> is_closer = t <= Real(hit.t) && t < Real(kInfinity<Real>);
+        if (none(is_closer)) return;
+        const Mask<Real> is_inside =
+            is_inside_box<Real>(load<Real>(block.low), load<Real>(block.high), ray.origin, ray.inverse, t);
+        keep_closest<Real>(t, block.id, mask_bits(is_closer && is_inside), hit);
+    }
+}
+
+template <SceneNeeds needs, class Real, class Block, class Work>
+RAYPOOL_INLINE void walk(const BlockTree<Block, ScalarOf<Real>, kLanes<Real>>& tree, const SpreadRay<Real>& ray,
+                         Hit<ScalarOf<Real>>& hit, Work& work) {
+    using S = ScalarOf<Real>;
+    if (tree.nodes.empty()) return;
+    struct Entry {
+        S enter;
+        std::int32_t child;
+    };
+    Entry stack[kTraversalStack<kLanes<Real>>];
+    Entry* top = stack;
+    std::int32_t child = 0;
+    for (;;) {
+        if (child >= 0) {
+            const auto& node = tree.nodes[child];
+            work.count(node);
+            Vec3<Real> near;
+            Vec3<Real> far;
+            for (int i = 0; i < 3; ++i) {
+                near[i] = load<Real>(node.bounds[i][ray.sign[i]]);
+                far[i] = load<Real>(node.bounds[i][1 - ray.sign[i]]);
+            }
+            const Interval<Real> inside = box_interval<Real>(near, far, ray.origin, ray.inverse, Real(hit.t));
+            alignas(64) S enter[kLanes<Real>];
+            inside.enter.copy_to(enter, stdx::vector_aligned);
+
+            // Push the children met, nearest on top.
+            Entry* const bottom = top;
+            for (unsigned bits = mask_bits(inside.enter <= inside.exit); bits != 0; bits &= bits - 1) {
+                const int i = std::countr_zero(bits);
+                Entry* place = top++;
+                for (; place != bottom && place[-1].enter < enter[i]; --place) *place = place[-1];
+                *place = {enter[i], node.child[i]};
+            }
+        } else {
+            const Block& block = tree.blocks[~child];
+            work.count(block);
+            intersect_block<needs, InBox::Yes, Real>(block, ray, hit);
+        }
+        do {
+            if (top == stack) return;
+            --top;
+        } while (top->enter > hit.t);
+        child = top->child;
+    }
+}
+
+}  // namespace detail
+
+/// `leaving_id` is the primitive that the ray starts on, or kNoPrimitive.
+template <SceneNeeds needs, class Scalar, class Work>
+[[gnu::noinline]] Hit<Scalar> closest_hit(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray,
+                                          std::int32_t leaving_id, Work& work) {
+    using Real = Wide<Scalar, kTreeWidth<Scalar>>;
+    const SpreadRay<Real> spread(ray, leaving_id);
+    Hit<Scalar> hit;
+    for (const auto& block : scene.large_spheres) {
+        work.count(block);
+        detail::intersect_block<needs, detail::InBox::No, Real>(block, spread, hit);
+    }
+    if constexpr (needs.flat) {
+        for (const auto& block : scene.planes) {
+            work.count(block);
+            detail::intersect_block<needs, detail::InBox::No, Real>(block, spread, hit);
+        }
+        detail::walk<needs, Real>(scene.quad_tree, spread, hit, work);
+    }
+    detail::walk<needs, Real>(scene.sphere_tree, spread, hit, work);
+    return hit;
+}
+
+}  // namespace raypool

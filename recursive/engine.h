@@ -1,0 +1,27 @@
+/// The per-pixel engines: recursion as in the paper, and the same tracer as a loop.
+///
+/// The loop over the image is OpenMP's, over pixels, lines or tiles under any schedule. A thread owns the whole pixels
+/// it renders, so nothing is shared but the scene. Follows He, Song and Zong, "Parallel Ray Tracing with OpenMP": the
+/// paper's basic version is lines with the default schedule, its better ones `static,1` and single pixels.
+#pragma once
+
+#include "core/engine.h"
+
+namespace raypool::recursive {
+
+class RecursiveEngine : public Engine {
+  public:
+    [[nodiscard]] std::string name() const override { return "recursive"; }
+    /// Throws InputError when a thread's stack cannot hold the depth, and says what would.
+    RenderReport render(const CompiledScene<float>&, const RenderSettings&, Framebuffer&) const override;
+    RenderReport render(const CompiledScene<double>&, const RenderSettings&, Framebuffer&) const override;
+};
+
+class IterativeEngine : public Engine {
+  public:
+    [[nodiscard]] std::string name() const override { return "iterative"; }
+    RenderReport render(const CompiledScene<float>&, const RenderSettings&, Framebuffer&) const override;
+    RenderReport render(const CompiledScene<double>&, const RenderSettings&, Framebuffer&) const override;
+};
+
+}  // namespace raypool::recursive

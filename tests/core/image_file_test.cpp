@@ -1,0 +1,462 @@
+#include "core/image_file.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfTiledOutputFile.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <png.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "core/error.h"
+#include "core/srgb.h"
+#include "tests/core/scratch_folder.h"
+
+namespace raypool {
+namespace {
+
+namespace fs = std::filesystem;
+
+const ImageAttributes kAttributes{{"raypool.hash", "0123456789abcdef"}, {"raypool.settings", "{\"spp\": 4}"}};
+
+/// Values of every magnitude and sign, and all that is odd about floats.
+Image wild_image(std::int64_t width, std::int64_t height) {
+    Image image(width, height);
+    std::uint32_t bits = 1;
+    for (float& value : image.rgb) value = std::bit_cast<float>(bits = bits * 1664525 + 1013904223);
+    constexpr std::array<std::uint32_t, 6> kOdd{0x80000000, 0x7f800000, 0xff800000, 0x7fc00001, 0xffa00000, 1};
+    for (std::size_t i = 0; i < kOdd.size() && i < image.rgb.size(); ++i) image.rgb[i] = std::bit_cast<float>(kOdd[i]);
+    return image;
+}
+
+bool same_bits(const Image& a, const Image& b) {
+    return a.width == b.width && a.height == b.height && a.rgb.size() == b.rgb.size() &&
+           std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(float)) == 0;
+}
+
+/// What reading `path` is refused with; empty if it is not. Any other exception fails the test.
+std::string refusal(const fs::path& path) {
+    try {
+        read_image(path);
+    } catch (const InputError& error) {
+        const std::string text = error.what();
+        EXPECT_EQ(text.find(path.string() + ": cannot read: "), 0U) << text;
+        EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+        return text.substr(path.string().size() + std::strlen(": cannot read: "));
+    }
+    return {};
+}
+
+/// A PNG file of any kind; empty rows for one that ends after its header. Errors abort the test.
+std::string png_of(png_uint_32 width, png_uint_32 height, int bit_depth, int color_type, int interlace, double gamma,
+                   std::vector<std::vector<png_byte>> rows) {
+    std::string text;
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_set_write_fn(
+        png, &text,
+        [](png_structp stream, png_bytep data, std::size_t size) {
+            static_cast<std::string*>(png_get_io_ptr(stream))->append(reinterpret_cast<char*>(data), size);
+        },
+        nullptr);
+    png_set_IHDR(png, info, width, height, bit_depth, color_type, interlace, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    const std::array<png_color, 2> palette{{{255, 0, 0}, {0, 128, 255}}};
+    const std::array<png_byte, 2> transparency{0, 128};
+    if (color_type == PNG_COLOR_TYPE_PALETTE) {
+        png_set_PLTE(png, info, palette.data(), palette.size());
+        png_set_tRNS(png, info, transparency.data(), transparency.size(), nullptr);
+    }
+    if (gamma > 0) png_set_gAMA(png, info, gamma);
+    png_write_info(png, info);
+    std::vector<png_bytep> pointers;
+    pointers.reserve(rows.size());
+    for (auto& row : rows) pointers.push_back(row.data());
+    if (!rows.empty()) {
+        png_write_image(png, pointers.data());
+        png_write_end(png, info);
+    }
+    png_destroy_write_struct(&png, &info);
+    return text;
+}
+
+TEST(Srgb, FollowsTheStandardsCurve) {
+    EXPECT_EQ(srgb_from_linear(0), 0);
+    EXPECT_EQ(linear_from_srgb(0), 0);
+    EXPECT_NEAR(srgb_from_linear(1), 1, 1e-15);
+    EXPECT_NEAR(linear_from_srgb(1), 1, 1e-15);
+    EXPECT_DOUBLE_EQ(srgb_from_linear(0.001), 0.01292);
+    EXPECT_DOUBLE_EQ(linear_from_srgb(0.02), 0.02 / 12.92);
+    EXPECT_NEAR(srgb_from_linear(0.18), 0.461356129500, 1e-10);
+    EXPECT_NEAR(srgb_from_linear(0.5), 0.735356983052, 1e-10);
+    EXPECT_NEAR(linear_from_srgb(0.5), 0.214041140482, 1e-10);
+    for (int i = 0; i <= 1024; ++i) EXPECT_NEAR(linear_from_srgb(srgb_from_linear(i / 1024.0)), i / 1024.0, 1e-7);
+}
+
+TEST(ImageFile, FormatIsTheExtensionInEitherCase) {
+    EXPECT_EQ(image_format("a/b.png"), ImageFormat::Png);
+    EXPECT_EQ(image_format("b.tar.EXR"), ImageFormat::Exr);
+    EXPECT_EQ(image_format("b.Pfm"), ImageFormat::Pfm);
+    for (const char* path : {"a.jpg", "png", ".png", "a.png/b", "a.png ", ""}) {
+        try {
+            image_format(path);
+            ADD_FAILURE() << path;
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.what(), std::string(path) + ": an image file's name must end in .png, .exr or .pfm");
+        }
+    }
+}
+
+TEST(ImageFile, ExrAndPfmKeepEveryBit) {
+    const ScratchFolder folder;
+    const std::array<std::array<std::int64_t, 2>, 5> sizes{{{1, 1}, {7, 5}, {1, 300}, {300, 1}, {19, 600}}};
+    for (const auto& [width, height] : sizes) {
+        for (const char* name : {"a.exr", "a.pfm"}) {
+            const Image image = wild_image(width, height);
+            write_image(folder / name, image, kAttributes);
+            EXPECT_TRUE(same_bits(read_image(folder / name), image)) << name << ' ' << width << 'x' << height;
+        }
+    }
+}
+
+TEST(ImageFile, PngIsWithinHalfACodeValueAndClampsTheRest) {
+    const ScratchFolder folder;
+    Image image(1000, 1);
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = static_cast<float>(i) / 2999.0F;
+    write_image(folder / "a.png", image, {});
+    const Image read = read_image(folder / "a.png");
+    ASSERT_EQ(read.rgb.size(), image.rgb.size());
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+        EXPECT_LE(std::abs(srgb_from_linear(read.rgb[i]) - srgb_from_linear(image.rgb[i])), 0.5 / 255 + 1e-6) << i;
+    }
+
+    const float infinity = std::numeric_limits<float>::infinity();
+    Image odd(2, 1);
+    odd.rgb = {std::numeric_limits<float>::quiet_NaN(), -1, -infinity, 1.5F, infinity, 1e30F};
+    write_image(folder / "odd.png", odd, {});
+    EXPECT_EQ(read_image(folder / "odd.png").rgb, (std::vector<float>{0, 0, 0, 1, 1, 1}));
+}
+
+TEST(ImageFile, EveryPngCodeMeansTheSrgbCurveAndComesBackAsItself) {
+    const ScratchFolder folder;
+    std::vector<png_byte> codes(std::size_t{256} * 3);
+    for (std::size_t i = 0; i < codes.size(); ++i) codes[i] = static_cast<png_byte>(i / 3);
+    set_file_text(folder / "a.png", png_of(256, 1, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, 0, {codes}));
+    const Image image = read_image(folder / "a.png");
+    for (int i = 0; i < 256; ++i) EXPECT_EQ(image.pixel(i, 0)[1], static_cast<float>(linear_from_srgb(i / 255.0)));
+    write_image(folder / "b.png", image, {});
+    EXPECT_TRUE(same_bits(read_image(folder / "b.png"), image));
+}
+
+TEST(ImageFile, RowZeroIsTheTopRowInEveryFormat) {
+    const ScratchFolder folder;
+    Image image(1, 2);
+    image.pixel(0, 0)[0] = 1;
+    image.pixel(0, 1)[2] = 1;
+    for (const char* name : {"a.png", "a.exr", "a.pfm"}) {
+        write_image(folder / name, image, {});
+        EXPECT_TRUE(same_bits(read_image(folder / name), image)) << name;
+    }
+    const std::string pfm = file_text(folder / "a.pfm");
+    float first = -1;
+    std::memcpy(&first, pfm.data() + std::strlen("PF\n1 2\n-1.0\n"), sizeof first);
+    EXPECT_EQ(first, 0);  // the bottom row comes first in the file
+    std::string png = file_text(folder / "a.png");
+    std::array<png_byte, 6> codes{};
+    png_image reader{};
+    reader.version = PNG_IMAGE_VERSION;
+    ASSERT_TRUE(png_image_begin_read_from_memory(&reader, png.data(), png.size()));
+    reader.format = PNG_FORMAT_RGB;
+    ASSERT_TRUE(png_image_finish_read(&reader, nullptr, codes.data(), 0, nullptr));
+    EXPECT_EQ(codes, (std::array<png_byte, 6>{255, 0, 0, 0, 0, 255}));
+}
+
+TEST(ImageFile, BytesDependOnImageAndAttributesOnly) {
+    const ScratchFolder folder;
+    const Image image = wild_image(20, 20);
+    for (const char* extension : {".png", ".exr", ".pfm"}) {
+        write_image(folder / (std::string("a") + extension), image, kAttributes);
+        write_image(folder / (std::string("b") + extension), image, kAttributes);
+        EXPECT_EQ(file_text(folder / (std::string("a") + extension)),
+                  file_text(folder / (std::string("b") + extension)));
+    }
+}
+
+TEST(ImageFile, ExrAttributesComeBackAsTheyWere) {
+    const ScratchFolder folder;
+    ImageAttributes attributes = kAttributes;
+    attributes["raypool.empty"] = "";
+    attributes["raypool.text"] = "two\nlines, \xc3\xa9 and \"quotes\"";
+    attributes["raypool.a_name_longer_than_31_characters"] = std::string(100'000, 'x');
+    write_image(folder / "a.exr", wild_image(3, 3), attributes);
+    EXPECT_EQ(read_exr_attributes(folder / "a.exr"), attributes);
+}
+
+TEST(ImageFile, PngCarriesTheSrgbChunkAndAttributesAsText) {
+    const ScratchFolder folder;
+    write_image(folder / "a.png", wild_image(3, 3), {{"raypool.hash", "abc"}, {"raypool.scene", "caf\xc3\xa9"}});
+    const std::string bytes = file_text(folder / "a.png");
+    EXPECT_NE(bytes.find("sRGB"), std::string::npos);
+    EXPECT_NE(bytes.find(std::string("tEXtraypool.hash") + '\0' + "abc"), std::string::npos);
+    EXPECT_NE(bytes.find(std::string("iTXtraypool.scene") + '\0'), std::string::npos);
+    EXPECT_NE(bytes.find("caf\xc3\xa9"), std::string::npos);
+}
+
+TEST(ImageFile, ReadsEveryKindOfPng) {
+    const ScratchFolder folder;
+    const auto read = [&](const std::string& bytes) {
+        set_file_text(folder / "a.png", bytes);
+        return read_image(folder / "a.png").rgb;
+    };
+    const auto linear = [](double coded) { return static_cast<float>(linear_from_srgb(coded)); };
+    const float half = linear(128 / 255.0);
+    const int none = PNG_INTERLACE_NONE;
+
+    EXPECT_EQ(read(png_of(2, 1, 8, PNG_COLOR_TYPE_GRAY, none, 0, {{128, 255}})),
+              (std::vector<float>{half, half, half, 1, 1, 1}));
+    EXPECT_EQ(read(png_of(2, 1, 1, PNG_COLOR_TYPE_GRAY, none, 0, {{0x40}})), (std::vector<float>{0, 0, 0, 1, 1, 1}));
+    EXPECT_EQ(read(png_of(2, 1, 8, PNG_COLOR_TYPE_PALETTE, none, 0, {{0, 1}})),
+              (std::vector<float>{1, 0, 0, 0, half, 1}));
+    // Alpha is dropped, not blended.
+    EXPECT_EQ(read(png_of(1, 1, 8, PNG_COLOR_TYPE_RGBA, none, 0, {{255, 128, 0, 3}})),
+              (std::vector<float>{1, half, 0}));
+    EXPECT_EQ(read(png_of(1, 1, 8, PNG_COLOR_TYPE_GRAY_ALPHA, none, 0, {{128, 0}})),
+              (std::vector<float>{half, half, half}));
+    // All 16 bits count.
+    EXPECT_EQ(read(png_of(1, 1, 16, PNG_COLOR_TYPE_RGB, none, 0, {{0x80, 0x01, 0xff, 0xff, 0, 1}})),
+              (std::vector<float>{linear(0x8001 / 65535.0), 1, linear(1 / 65535.0)}));
+    // A gAMA chunk is believed, unless it is the approximation of sRGB.
+    EXPECT_EQ(read(png_of(1, 1, 8, PNG_COLOR_TYPE_RGB, none, 1.0, {{51, 128, 255}})),
+              (std::vector<float>{0.2F, static_cast<float>(128 / 255.0), 1}));
+    EXPECT_EQ(read(png_of(1, 1, 8, PNG_COLOR_TYPE_RGB, none, 0.45455, {{0, 128, 255}})),
+              (std::vector<float>{0, half, 1}));
+
+    std::vector<std::vector<png_byte>> rows(9, std::vector<png_byte>(33));
+    for (std::size_t i = 0; i < std::size_t{9} * 33; ++i) rows[i / 33][i % 33] = static_cast<png_byte>(i * 7);
+    EXPECT_EQ(read(png_of(11, 9, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_ADAM7, 0, rows)),
+              read(png_of(11, 9, 8, PNG_COLOR_TYPE_RGB, none, 0, rows)));
+}
+
+TEST(ImageFile, ReadsPfmInBothByteOrders) {
+    const ScratchFolder folder;
+    set_file_text(folder / "little.pfm", std::string("PF\n1 1\n-1.0\n\0\0\x80\x3f\0\0\0\x40\0\0\0\xc0", 24));
+    set_file_text(folder / "big.pfm", std::string("PF 1 1 1.0\n\x3f\x80\0\0\x40\0\0\0\xc0\0\0\0", 23));
+    EXPECT_EQ(read_image(folder / "little.pfm").rgb, (std::vector<float>{1, 2, -2}));
+    EXPECT_EQ(read_image(folder / "big.pfm").rgb, (std::vector<float>{1, 2, -2}));
+}
+
+TEST(ImageFile, ReadsHalfFloatsAndExtraChannelsAndShiftedWindowsOfExr) {
+    const ScratchFolder folder;
+    const fs::path path = folder / "a.exr";
+    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::RLE_COMPRESSION}) {
+        Imf::Header header(2, 1);
+        header.compression() = compression;
+        header.dataWindow().min.x = -3;
+        header.dataWindow().max.x = -2;
+        header.dataWindow().min.y = header.dataWindow().max.y = 1000;
+        for (const char* name : {"A", "B", "G", "R"}) header.channels().insert(name, Imf::Channel(Imf::HALF));
+        // 0.5, 4, 3, 2 and 0.5, 7, 6, 5 as half floats
+        const std::array<std::uint16_t, 8> values{0x3800, 0x4400, 0x4200, 0x4000, 0x3800, 0x4700, 0x4600, 0x4500};
+        {
+            Imf::FrameBuffer buffer;
+            for (std::size_t i = 0; i < 4; ++i) {
+                const auto& window = header.dataWindow();
+                const std::array<const char*, 4> names{"A", "B", "G", "R"};
+                buffer.insert(names[i], Imf::Slice::Make(Imf::HALF, &values[i], window, 8, 16));
+            }
+            Imf::OutputFile file(path.c_str(), header);
+            file.setFrameBuffer(buffer);
+            file.writePixels(1);
+        }
+        EXPECT_EQ(read_image(path).rgb, (std::vector<float>{2, 3, 4, 5, 6, 7}));
+    }
+}
+
+TEST(ImageFile, RefusesExrFilesOfAnotherShape) {
+    const ScratchFolder folder;
+    {
+        Imf::Header header(2, 2);
+        header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+        const std::array<float, 4> values{};
+        Imf::FrameBuffer buffer;
+        buffer.insert("Y", Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow()));
+        Imf::OutputFile file((folder / "grey.exr").c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(2);
+    }
+    {
+        Imf::Header header(2, 2);
+        header.channels().insert("R", Imf::Channel(Imf::FLOAT));
+        header.setTileDescription(Imf::TileDescription(2, 2));
+        Imf::TiledOutputFile file((folder / "tiled.exr").c_str(), header);
+    }
+    EXPECT_EQ(refusal(folder / "grey.exr"), "must have channels R, G and B");
+    EXPECT_EQ(refusal(folder / "tiled.exr"),
+              "must be version 2 and one part of scan lines: no tiles, deep data or parts");
+}
+
+TEST(ImageFile, RefusesWhatIsNotAReadableFile) {
+    const ScratchFolder folder;
+    fs::create_directory(folder / "folder.png");
+    set_file_text(folder / "empty.png", "");
+    set_file_text(folder / "empty.exr", "");
+    set_file_text(folder / "empty.pfm", "");
+    set_file_text(folder / "text.png", "this is not a picture");
+    set_file_text(folder / "text.exr", "this is not a picture");
+    set_file_text(folder / "grey.pfm", std::string("Pf\n1 1\n-1.0\n\0\0\0\0", 16));
+    EXPECT_EQ(refusal(folder / "absent.png"), "No such file or directory");
+    EXPECT_EQ(refusal(folder / "folder.png"), "Is a directory");
+    EXPECT_EQ(refusal(folder / "text.png"), "not a PNG file");
+    EXPECT_EQ(refusal(folder / "text.exr"), "not an EXR file");
+    EXPECT_EQ(refusal(folder / "grey.pfm"), "not a PFM file in colour: must begin with PF");
+    for (const char* name : {"empty.png", "empty.exr", "empty.pfm"}) EXPECT_NE(refusal(folder / name), "") << name;
+}
+
+TEST(ImageFile, RefusesAFileCutOffAnywhere) {
+    const ScratchFolder folder;
+    for (const char* name : {"a.png", "a.exr", "a.pfm"}) {
+        write_image(folder / name, wild_image(5, 20), kAttributes);
+        const std::string bytes = file_text(folder / name);
+        ASSERT_EQ(refusal(folder / name), "");
+        for (std::size_t size = 0; size < bytes.size(); ++size) {
+            set_file_text(folder / name, std::string_view(bytes).substr(0, size));
+            ASSERT_NE(refusal(folder / name), "") << name << " cut off after " << size << " of " << bytes.size();
+        }
+    }
+}
+
+TEST(ImageFile, AnyDamagedByteIsReadOrRefusedButNeverCrashes) {
+    const ScratchFolder folder;
+    for (const char* name : {"a.png", "a.exr", "a.pfm"}) {
+        write_image(folder / name, wild_image(3, 18), {{"raypool.hash", "0"}});
+        const std::string bytes = file_text(folder / name);
+        int refused_count = 0;
+        for (std::size_t place = 0; place < bytes.size(); ++place) {
+            for (const int damage : {0x01, 0x80, 0xff}) {
+                std::string damaged = bytes;
+                damaged[place] = static_cast<char>(damaged[place] ^ damage);
+                set_file_text(folder / name, damaged);
+                refused_count += refusal(folder / name) != "";
+            }
+        }
+        EXPECT_GT(refused_count, 10) << name;
+    }
+}
+
+/// Reads in a process of its own; the most memory it took beyond what it began with, in MiB.
+long memory_to_refuse(const fs::path& path) {
+    const auto peak = [] {
+        rusage usage{};
+        ::getrusage(RUSAGE_SELF, &usage);
+        return usage.ru_maxrss / 1024;
+    };
+    std::array<int, 2> channel{};
+    if (::pipe(channel.data()) != 0) return -1;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const long before = peak();
+        const bool is_refused = refusal(path) != "";
+        const long taken = is_refused ? peak() - before : -1;
+        ::_exit(::write(channel[1], &taken, sizeof taken) == sizeof taken ? 0 : 1);
+    }
+    ::close(channel[1]);
+    long taken = -1;
+    const bool is_answered = ::read(channel[0], &taken, sizeof taken) == sizeof taken;
+    ::close(channel[0]);
+    ::waitpid(child, nullptr, 0);
+    return is_answered ? taken : -1;
+}
+
+TEST(ImageFile, ClaimedDimensionsAreRefusedBeforeMemoryIsSpentOnThem) {
+    const ScratchFolder folder;
+    std::vector<fs::path> hostile;
+    const auto add = [&](const std::string& name, const std::string& bytes) {
+        hostile.push_back(folder / name);
+        set_file_text(hostile.back(), bytes);
+    };
+    for (const char* size : {"65536 16384", "65537 1", "1000000000 1000000000", "4294967296 4294967296", "-1 -1", "0 1",
+                             "99999999999999999999 1", "1e3 1", "4294967297 1"}) {
+        add(fmt::format("{}.pfm", hostile.size()), fmt::format("PF\n{}\n-1.0\n{}", size, std::string(12, '\0')));
+    }
+    const std::array<std::array<png_uint_32, 2>, 4> sizes{
+        {{65536, 16384}, {65537, 1}, {PNG_UINT_31_MAX, PNG_UINT_31_MAX}, {32768, 32768}}};
+    for (const auto& [width, height] : sizes) {
+        add(fmt::format("{}.png", hostile.size()),
+            png_of(width, height, 16, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, 0, {}));
+    }
+    write_image(folder / "good.exr", wild_image(3, 3), {});
+    const std::string exr = file_text(folder / "good.exr");
+    const std::size_t window = exr.find("dataWindow") + sizeof "dataWindow" + sizeof "box2i" + 4;
+    constexpr std::int32_t kMin = std::numeric_limits<std::int32_t>::min();
+    constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max();
+    const std::array<std::array<std::int32_t, 4>, 6> windows{{{0, 0, 65535, 16383},
+                                                              {0, 0, 65536, 0},
+                                                              {0, 0, 16383, 65535},
+                                                              {kMin, kMin, kMax, kMax},
+                                                              {0, 0, -1, -1},
+                                                              {kMax, kMax, kMin, kMin}}};
+    for (const auto& box : windows) {
+        std::string bytes = exr;
+        std::memcpy(bytes.data() + window, box.data(), sizeof box);
+        add(fmt::format("{}.exr", hostile.size()), bytes);
+    }
+    std::string long_attribute = exr;
+    std::memcpy(long_attribute.data() + window - 4, &kMax, 4);
+    add("long.exr", long_attribute);
+    // OpenEXR finds the end of the channel list by itself; who trusts its size of 0 never sees the data window.
+    std::string lost_window = exr;
+    const std::array<std::int32_t, 4> wide{0, 0, 9'999'999, 63};
+    std::memcpy(lost_window.data() + window, &wide, sizeof wide);
+    std::memset(lost_window.data() + exr.find("chlist") + sizeof "chlist", 0, 4);
+    add("lost.exr", lost_window);
+
+    for (const fs::path& path : hostile) {
+        const long taken = memory_to_refuse(path);
+        EXPECT_GE(taken, 0) << path << " was read";
+        EXPECT_LT(taken, 512) << path << ": " << refusal(path);
+    }
+}
+
+TEST(Texture, IsThePngInLinearLight) {
+    const ScratchFolder folder;
+    set_file_text(folder / "a.png",
+                  png_of(1, 2, 8, PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE, 0, {{255, 0, 128, 7}, {1, 2, 3, 255}}));
+    const auto texels = read_texture(folder / "a.png");
+    EXPECT_EQ(texels->width, 1);
+    EXPECT_EQ(texels->height, 2);
+    EXPECT_EQ(texels->rgb, read_image(folder / "a.png").rgb);
+    EXPECT_EQ(texels->rgb[0], 1);
+}
+
+TEST(Texture, RefusesWhatIsBrokenOrTooLargeByName) {
+    const ScratchFolder folder;
+    write_image(folder / "wide.png", Image(kMaxTextureSide + 1, 1), {});
+    EXPECT_EQ(refusal(folder / "wide.png"), "");
+    EXPECT_THROW(read_texture(folder / "wide.png"), InputError);
+    write_image(folder / "widest.png", Image(kMaxTextureSide, 1), {});
+    EXPECT_EQ(read_texture(folder / "widest.png")->width, kMaxTextureSide);
+
+    set_file_text(folder / "text.png", "text");
+    try {
+        read_texture(folder / "text.png");
+        ADD_FAILURE();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.what(), (folder / "text.png").string() + ": cannot read: not a PNG file");
+    }
+    EXPECT_THROW(read_texture(folder / "absent.png"), InputError);
+    EXPECT_THROW(read_texture(folder.path()), InputError);
+}
+
+}  // namespace
+}  // namespace raypool

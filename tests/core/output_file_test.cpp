@@ -1,0 +1,214 @@
+#include "core/output_file.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "core/error.h"
+#include "tests/core/scratch_folder.h"
+
+namespace raypool {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_text(const fs::path& path, std::string_view text) {
+    write_whole(path, std::as_bytes(std::span(text)));
+}
+
+/// The text of the InputError that `action` throws; empty if it throws none.
+std::string error_of(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+/// What `check` returns, run in a process of its own because it changes the whole process.
+int in_child(const std::function<int()>& check) {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(check());
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(OutputFile, HoldsExactlyWhatWasWritten) {
+    const ScratchFolder folder;
+    const std::string text(100'000, 'x');
+    write_text(folder / "new.txt", text);
+    EXPECT_EQ(file_text(folder / "new.txt"), text);
+    write_text(folder / "new.txt", "short");
+    EXPECT_EQ(file_text(folder / "new.txt"), "short");
+    write_text(folder / "empty.txt", "");
+    EXPECT_EQ(fs::file_size(folder / "empty.txt"), 0U);
+    EXPECT_EQ(folder.entry_count(), 2);
+}
+
+TEST(OutputFile, FollowsTheUmaskLikeAnyOtherFile) {
+    const ScratchFolder folder;
+    const int is_wrong = in_child([&] {
+        ::umask(0027);
+        write_text(folder / "a.txt", "a");
+        struct stat status {};
+        ::stat((folder / "a.txt").c_str(), &status);
+        return (status.st_mode & 0777) == 0640 ? 0 : 1;
+    });
+    EXPECT_EQ(is_wrong, 0);
+}
+
+TEST(OutputFile, TakesNamesAsLongAsTheSystemDoes) {
+    const ScratchFolder folder;
+    const std::string name(255, 'n');
+    EXPECT_EQ(error_of([&] { write_text(folder / name, "a"); }), "");
+    EXPECT_NE(error_of([&] { check_writable(folder / (name + "n")); }), "");
+}
+
+TEST(OutputFile, LeavesALinkALink) {
+    const ScratchFolder folder;
+    set_file_text(folder / "real.txt", "old");
+    fs::create_symlink("real.txt", folder / "link.txt");
+    write_text(folder / "link.txt", "new");
+    EXPECT_TRUE(fs::is_symlink(folder / "link.txt"));
+    EXPECT_EQ(file_text(folder / "real.txt"), "new");
+}
+
+TEST(OutputFile, AFullDiskLeavesTheOldFileAndNoTemporary) {
+    const ScratchFolder folder;
+    set_file_text(folder / "a.txt", "old");
+    const int failures = in_child([&] {
+        std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit{4096, 4096};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        const std::string text(8192, 'x');
+        const std::string replaced = error_of([&] { write_text(folder / "a.txt", text); });
+        const std::string created = error_of([&] { write_text(folder / "b.txt", text); });
+        const std::string expected = ": cannot write: File too large";
+        return (replaced == (folder / "a.txt").string() + expected ? 0 : 1) +
+               (created == (folder / "b.txt").string() + expected ? 0 : 2);
+    });
+    EXPECT_EQ(failures, 0);
+    EXPECT_EQ(file_text(folder / "a.txt"), "old");
+    EXPECT_EQ(folder.entry_count(), 1);
+}
+
+TEST(OutputFile, AFullDeviceIsReportedByName) {
+    EXPECT_EQ(error_of([] { write_text("/dev/full", "a"); }), "/dev/full: cannot write: No space left on device");
+    EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST(OutputFile, WritesIntoDevicesAndPipesWithoutReplacingThem) {
+    write_text("/dev/null", "a");
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+
+    const ScratchFolder folder;
+    const fs::path pipe = folder / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::string received;
+    std::thread reader([&] { received = file_text(pipe); });
+    write_text(pipe, "through the pipe");
+    reader.join();
+    EXPECT_EQ(received, "through the pipe");
+    EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST(OutputFile, StandardOutputLeadingToAFileKeepsWhatElseGoesThere) {
+    const ScratchFolder folder;
+    const int failures = in_child([&] {
+        const int file = ::open((folder / "out.txt").c_str(), O_WRONLY | O_CREAT, 0600);
+        ::dup2(file, STDOUT_FILENO);
+        bool is_complete = ::write(STDOUT_FILENO, "before ", 7) == 7;
+        write_text("/dev/stdout", "content");
+        is_complete &= ::write(STDOUT_FILENO, " after", 6) == 6;
+        return is_complete ? 0 : 1;
+    });
+    EXPECT_EQ(failures, 0);
+    EXPECT_EQ(file_text(folder / "out.txt"), "before content after");
+}
+
+TEST(OutputFile, RefusesFoldersAndPlacesInFoldersThatAreNotThere) {
+    const ScratchFolder folder;
+    const std::string here = folder.path().string();
+    set_file_text(folder / "file", "old");
+    struct Case {
+        std::string path, expected;
+    };
+    const std::vector<Case> cases{
+        {here, here + ": cannot write: Is a directory"},
+        {here + "/", here + "/: cannot write: Is a directory"},
+        {here + "/absent/a.txt", here + "/absent/a.txt: cannot write: No such file or directory"},
+        {here + "/absent/", here + "/absent/: cannot write: No such file or directory"},
+        {here + "/file/a.txt", here + "/file/a.txt: cannot write: Not a directory"},
+        {"", ": cannot write: No such file or directory"},
+    };
+    for (const Case& refused : cases) {
+        EXPECT_EQ(error_of([&] { check_writable(refused.path); }), refused.expected);
+        EXPECT_EQ(error_of([&] { write_text(refused.path, "new"); }), refused.expected);
+    }
+    EXPECT_EQ(folder.entry_count(), 1);
+    EXPECT_EQ(file_text(folder / "file"), "old");
+}
+
+TEST(OutputFile, RespectsWriteProtection) {
+    const ScratchFolder folder;
+    fs::create_directory(folder / "locked");
+    set_file_text(folder / "protected.txt", "old");
+    fs::permissions(folder / "protected.txt", fs::perms::owner_read);
+    fs::permissions(folder / "locked", fs::perms::owner_read | fs::perms::owner_exec);
+    fs::permissions(folder.path(), fs::perms::all);
+    const int failures = in_child([&] {
+        if (::geteuid() == 0 && ::setuid(65534) != 0) return 0;  // root may write everywhere
+        int count = 0;
+        for (const char* name : {"protected.txt", "locked/a.txt"}) {
+            const std::string expected = (folder / name).string() + ": cannot write: Permission denied";
+            count += error_of([&] { check_writable(folder / name); }) != expected;
+            count += error_of([&] { write_text(folder / name, "new"); }) != expected;
+        }
+        return count;
+    });
+    fs::permissions(folder / "locked", fs::perms::owner_all);
+    EXPECT_EQ(failures, 0);
+}
+
+TEST(OutputFile, CheckingAheadChangesNothing) {
+    const ScratchFolder folder;
+    set_file_text(folder / "old.txt", "old");
+    const auto modified = fs::last_write_time(folder / "old.txt");
+    check_writable(folder / "old.txt");
+    check_writable(folder / "new.txt");
+    check_writable("/dev/null");
+    EXPECT_EQ(file_text(folder / "old.txt"), "old");
+    EXPECT_EQ(fs::last_write_time(folder / "old.txt"), modified);
+    EXPECT_EQ(folder.entry_count(), 1);
+}
+
+TEST(OutputFile, ReadersSeeTheOldContentOrTheNewNeverAPart) {
+    const ScratchFolder folder;
+    const fs::path path = folder / "a.txt";
+    const std::string first(300'000, 'a');
+    const std::string second(200'000, 'b');
+    write_text(path, first);
+    std::thread writer([&] {
+        for (int i = 0; i < 50; ++i) write_text(path, i % 2 == 0 ? second : first);
+    });
+    int partial_count = 0;
+    for (int i = 0; i < 100; ++i) {
+        const std::string seen = file_text(path);
+        partial_count += seen != first && seen != second;
+    }
+    writer.join();
+    EXPECT_EQ(partial_count, 0);
+}
+
+}  // namespace
+}  // namespace raypool

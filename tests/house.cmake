@@ -1,0 +1,26 @@
+# Tests of what surrounds the code: the installed package, the documentation, the sanitizer's set-up.
+
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+add_test(NAME documentation
+         COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/docs/check_docs.py ${PROJECT_SOURCE_DIR} $<TARGET_FILE:raypool>)
+
+if(RAYPOOL_SANITIZE MATCHES thread)
+  # Without Archer, ThreadSanitizer takes the barriers of OpenMP for races. libomp loads it by itself where it finds it.
+  add_test(NAME archer COMMAND raypool render one_sphere --spp 1 --threads 2 -o ${CMAKE_CURRENT_BINARY_DIR}/archer.png)
+  set_tests_properties(archer PROPERTIES ENVIRONMENT ARCHER_OPTIONS=verbose=1 LABELS equivalence
+                                         PASS_REGULAR_EXPRESSION "Archer detected OpenMP application")
+endif()
+
+if(NOT RAYPOOL_SANITIZE)  # sanitizers are no part of the package
+  set(prefix ${CMAKE_CURRENT_BINARY_DIR}/installed)
+  add_test(NAME install COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${prefix})
+  add_test(NAME consumer
+           COMMAND ${CMAKE_CTEST_COMMAND}
+                   --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/consumer ${CMAKE_CURRENT_BINARY_DIR}/consumer
+                   --build-generator ${CMAKE_GENERATOR}
+                   --build-options -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
+                                   -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE}
+                   --test-command consumer)
+  set_tests_properties(install PROPERTIES FIXTURES_SETUP installed)
+  set_tests_properties(consumer PROPERTIES FIXTURES_REQUIRED installed)
+endif()
