@@ -31,6 +31,7 @@ struct RenderOptions {
     std::int64_t spp = 100;
     std::int64_t width = 0;  ///< 0: the scene's
     std::int64_t depth = 50;
+    int split_depth = 0;
     std::uint64_t seed = 0;
     std::string samples;
     int threads = 0;  ///< 0: OpenMP's
@@ -69,6 +70,7 @@ RenderSettings render_settings(const RenderOptions& options) {
         settings.end_sample = range.end;
     }
     settings.depth = static_cast<std::int32_t>(options.depth);
+    settings.split_depth = options.split_depth;
     settings.seed = options.seed;
     settings.threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
     settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
@@ -189,7 +191,10 @@ void add_render_command(CLI::App& app, int&) {
     command->add_option("--width", options->width, "Image width; the height follows (default: the scene's)")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
     command->add_option("--depth", options->depth, "Most segments of a path (default: 50)")
-        ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000'000}));
+        ->check(CLI::Range(std::int64_t{0}, std::int64_t{path_step::kMostBounces}));
+    command->add_option("--split-depth", options->split_depth,
+                        "At so many first hits on glass follow both the reflected and the refracted ray (default: 0)")
+        ->check(CLI::Range(0, path_step::kMostSplits));
     command->add_option("--seed", options->seed, "Seed of all random numbers (default: 0)");
     command->add_option("--precision", options->precision, "Numbers of the kernels (default: float)")
         ->check(CLI::IsMember({"float", "double"}));

@@ -17,6 +17,7 @@ json settings_json(const RenderRecord& record) {
             {"spp", record.spp},
             {"samples", {settings.first_sample, settings.end_sample}},
             {"depth", settings.depth},
+            {"split_depth", settings.split_depth},
             {"seed", settings.seed},
             {"precision", record.precision == Precision::Float ? "float" : "double"},
             {"engine", record.engine},

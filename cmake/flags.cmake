@@ -26,7 +26,7 @@ target_compile_definitions(raypool_flags INTERFACE EIGEN_DONT_PARALLELIZE EIGEN_
 add_library(raypool_warnings INTERFACE)
 # gcc 12 finds "uninitialised" values inside its own AVX-512 header (its bug 105593).
 target_compile_options(raypool_warnings INTERFACE -Wall -Wextra $<$<BOOL:${RAYPOOL_WERROR}>:-Werror>
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-uninitialized>)
 if(RAYPOOL_SANITIZE)
   target_compile_options(raypool_warnings INTERFACE -fsanitize=${RAYPOOL_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=all)

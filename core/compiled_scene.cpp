@@ -115,8 +115,7 @@ class Compiler {
     }
 
   private:
-    using Spheres = typename CompiledScene<Scalar>::Spheres;
-    using Flats = typename CompiledScene<Scalar>::Flats;
+    using Ids = std::vector<std::uint32_t>;
     static constexpr int kWidth = kTreeWidth<Scalar>;
 
     void check_size() const {
@@ -234,15 +233,19 @@ class Compiler {
                box[by_area[large]].area() > kLargeArea * area_after[large])
             ++large;
 
-        const std::vector<std::uint32_t> large_ids(by_area.begin(), by_area.begin() + large);
-        if (large > 0) out_.large_spheres.push_back(sphere_block(large_ids));
+        const Ids large_ids(by_area.begin(), by_area.begin() + static_cast<std::ptrdiff_t>(large));
+        if (large > 0) out_.large_spheres.push_back(sphere_block<kWidth>(large_ids));
 
-        std::vector<std::uint32_t> ids(by_area.begin() + large, by_area.end());
+        Ids ids(by_area.begin() + static_cast<std::ptrdiff_t>(large), by_area.end());
         std::sort(ids.begin(), ids.end());
         std::vector<Box> boxes;
         for (const std::uint32_t id : ids) boxes.push_back(box[id]);
-        out_.sphere_tree = block_tree<Spheres>(
-            boxes, ids, [&](const std::vector<std::uint32_t>& in_leaf) { return sphere_block(in_leaf); });
+        const auto make_tree = [&]<int width>() {
+            return block_tree<SphereBlock<Scalar, width>, width>(
+                boxes, ids, [&](const Ids& in_leaf) { return sphere_block<width>(in_leaf); });
+        };
+        out_.sphere_tree = make_tree.template operator()<kWidth>();
+        out_.sphere_stream_tree = make_tree.template operator()<kStreamTreeWidth>();
     }
 
     void add_flats() {
@@ -250,24 +253,29 @@ class Compiler {
         std::vector<std::uint32_t> ids(scene_.quads.size());
         std::iota(ids.begin(), ids.end(), static_cast<std::uint32_t>(scene_.spheres.size()));
         for (const Quad& quad : scene_.quads) boxes.push_back(quad_box<Scalar>(quad));
-        out_.quad_tree = block_tree<Flats>(boxes, ids, [&](const std::vector<std::uint32_t>& in_leaf) {
-            std::vector<Box> leaf_boxes;
-            for (const std::uint32_t id : in_leaf) leaf_boxes.push_back(boxes[id - ids.front()]);
-            return flat_block(in_leaf, leaf_boxes);
-        });
+        const auto make_tree = [&]<int width>() {
+            return block_tree<FlatBlock<Scalar, width>, width>(boxes, ids, [&](const Ids& in_leaf) {
+                std::vector<Box> leaf_boxes;
+                for (const std::uint32_t id : in_leaf) leaf_boxes.push_back(boxes[id - ids.front()]);
+                return flat_block<width>(in_leaf, leaf_boxes);
+            });
+        };
+        out_.quad_tree = make_tree.template operator()<kWidth>();
+        out_.quad_stream_tree = make_tree.template operator()<kStreamTreeWidth>();
         const auto first_plane = static_cast<std::uint32_t>(scene_.spheres.size() + scene_.quads.size());
         for (std::uint32_t i = 0; i < scene_.planes.size(); i += kWidth) {
             std::vector<std::uint32_t> block;
             for (std::uint32_t k = i; k < std::min<std::size_t>(i + kWidth, scene_.planes.size()); ++k)
                 block.push_back(first_plane + k);
-            out_.planes.push_back(flat_block(block, std::vector<Box>(block.size())));
+            out_.planes.push_back(flat_block<kWidth>(block, std::vector<Box>(block.size())));
         }
     }
 
-    Spheres sphere_block(const std::vector<std::uint32_t>& ids) const {
-        Spheres block{};
-        std::fill_n(block.radius, kWidth, std::numeric_limits<Scalar>::quiet_NaN());
-        std::fill_n(block.id, kWidth, kNoPrimitive);
+    template <int width>
+    SphereBlock<Scalar, width> sphere_block(const Ids& ids) const {
+        SphereBlock<Scalar, width> block{};
+        std::fill_n(block.radius, width, std::numeric_limits<Scalar>::quiet_NaN());
+        std::fill_n(block.id, width, kNoPrimitive);
         for (std::size_t lane = 0; lane < ids.size(); ++lane) {
             using Row = SurfaceRow<Scalar>;
             const Row& row = out_.surfaces[ids[lane]];
@@ -282,10 +290,11 @@ class Compiler {
         return block;
     }
 
-    Flats flat_block(const std::vector<std::uint32_t>& ids, const std::vector<Box>& boxes) const {
-        Flats block{};
-        for (auto& component : block.normal) std::fill_n(component, kWidth, std::numeric_limits<Scalar>::quiet_NaN());
-        std::fill_n(block.id, kWidth, kNoPrimitive);
+    template <int width>
+    FlatBlock<Scalar, width> flat_block(const Ids& ids, const std::vector<Box>& boxes) const {
+        FlatBlock<Scalar, width> block{};
+        for (auto& component : block.normal) std::fill_n(component, width, std::numeric_limits<Scalar>::quiet_NaN());
+        std::fill_n(block.id, width, kNoPrimitive);
         for (std::size_t lane = 0; lane < ids.size(); ++lane) {
             const SurfaceRow<Scalar>& surface = out_.surfaces[ids[lane]];
             const FlatRow<Scalar>& flat = out_.flats[ids[lane] - scene_.spheres.size()];
@@ -302,13 +311,13 @@ class Compiler {
         return block;
     }
 
-    template <class Block, class MakeBlock>
-    BlockTree<Block, Scalar, kWidth> block_tree(const std::vector<Box>& boxes, const std::vector<std::uint32_t>& ids,
-                                                MakeBlock make_block) const {
-        WideBvh<Scalar, kWidth> bvh = collapse<Scalar, kWidth>(build_binary_bvh(boxes, kWidth));
-        BlockTree<Block, Scalar, kWidth> tree;
+    template <class Block, int width, class MakeBlock>
+    BlockTree<Block, Scalar, width> block_tree(const std::vector<Box>& boxes, const Ids& ids,
+                                               MakeBlock make_block) const {
+        WideBvh<Scalar, width> bvh = collapse<Scalar, width>(build_binary_bvh(boxes, width));
+        BlockTree<Block, Scalar, width> tree;
         for (const auto& leaf : bvh.leaves) {
-            std::vector<std::uint32_t> in_leaf;
+            Ids in_leaf;
             for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) in_leaf.push_back(ids[bvh.order[i]]);
             tree.blocks.push_back(make_block(in_leaf));
         }

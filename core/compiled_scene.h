@@ -83,6 +83,9 @@ struct BlockTree {
 template <class Scalar>
 inline constexpr int kTreeWidth = sizeof(Scalar) == 4 ? 8 : Wide<double, stdx::native_simd<double>::size()>::size();
 
+/// The same for the tree that streams and packets of rays walk.
+inline constexpr int kStreamTreeWidth = 4;
+
 template <class Scalar>
 struct Sky {
     Vec3<Scalar> middle;  ///< radiance at the horizon, ...
@@ -91,8 +94,10 @@ struct Sky {
 
 template <class Scalar>
 struct CompiledScene {
-    using Spheres = SphereBlock<Scalar, kTreeWidth<Scalar>>;
-    using Flats = FlatBlock<Scalar, kTreeWidth<Scalar>>;
+    template <int width>
+    using SphereTree = BlockTree<SphereBlock<Scalar, width>, Scalar, width>;
+    template <int width>
+    using QuadTree = BlockTree<FlatBlock<Scalar, width>, Scalar, width>;
 
     SceneNeeds needs;
     std::int64_t width = 0;  ///< of the image, in pixels
@@ -107,10 +112,15 @@ struct CompiledScene {
     std::vector<ImageView<Scalar>> images;     ///< by texture id, beside `textures`
     std::vector<Scalar> texels;
 
-    std::vector<Spheres> large_spheres;  ///< those that span the scene: every ray tests them, before the tree
-    std::vector<Flats> planes;           ///< likewise
-    BlockTree<Spheres, Scalar, kTreeWidth<Scalar>> sphere_tree;
-    BlockTree<Flats, Scalar, kTreeWidth<Scalar>> quad_tree;
+    /// Spheres that span the scene, and planes: every ray tests them, before the trees.
+    std::vector<SphereBlock<Scalar, kTreeWidth<Scalar>>> large_spheres;
+    std::vector<FlatBlock<Scalar, kTreeWidth<Scalar>>> planes;
+    /// For one ray against a register of boxes or shapes.
+    SphereTree<kTreeWidth<Scalar>> sphere_tree;
+    QuadTree<kTreeWidth<Scalar>> quad_tree;
+    /// For a register of rays against one box or shape.
+    SphereTree<kStreamTreeWidth> sphere_stream_tree;
+    QuadTree<kStreamTreeWidth> quad_stream_tree;
 
     [[nodiscard]] std::int64_t pixel_count() const { return width * height; }
     [[nodiscard]] std::size_t bytes() const;  ///< of all tables

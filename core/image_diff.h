@@ -26,9 +26,9 @@ struct ImageDiff {
 /// InputError if the sizes differ.
 ImageDiff compare_images(const Image& a, const Image& b);
 
-/// The error e of each pixel (root mean square over its channels) in the colours of "inferno", on a logarithmic scale
-/// that is the same for every picture: 1e-7 and less is nearly black, 1 and more nearly white, and an 8-bit code value
-/// in the middle. Pixels with the same bits are black; any other is at least dark violet. InputError as above.
+/// The error of each pixel (root mean square over its channels) in the colours of "inferno", on a logarithmic scale
+/// that is the same for every picture: dark violet for 1e-7, orange for an 8-bit code value, pale yellow for 1 and
+/// more. Pixels with the same bits are black and no others are. InputError as above.
 Image false_colour(const Image& a, const Image& b);
 
 }  // namespace raypool

@@ -10,7 +10,6 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
-#include <new>
 #include <string>
 #include <utility>
 
@@ -137,7 +136,7 @@ bool append(Bytes& bytes, const png_byte* source, std::size_t size) noexcept try
     const auto* first = reinterpret_cast<const std::byte*>(source);
     bytes.insert(bytes.end(), first, first + size);
     return true;
-} catch (const std::bad_alloc&) {
+} catch (...) {
     return false;
 }
 

@@ -70,6 +70,10 @@ namespace detail {
 template <class Scalar, std::size_t bytes>
 struct Registers;
 template <>
+struct Registers<float, 16> {  // four 32-bit integers, beside four doubles
+    using Integer = __m128i;
+};
+template <>
 struct Registers<float, 32> {
     using Real = __m256;
     using Integer = __m256i;
@@ -187,31 +191,6 @@ template <std::floating_point T>
 RAYPOOL_INLINE T nmad(T a, T b, T c) {
     return std::fma(-a, b, c);
 }
-template <std::floating_point T>
-RAYPOOL_INLINE T min(T a, T b) {
-    return a < b ? a : b;
-}
-template <std::floating_point T>
-RAYPOOL_INLINE T max(T a, T b) {
-    return a > b ? a : b;
-}
-template <std::floating_point T>
-RAYPOOL_INLINE T sqrt(T a) {
-    return std::sqrt(a);
-}
-template <std::floating_point T>
-RAYPOOL_INLINE T floor(T a) {
-    return std::floor(a);
-}
-template <std::floating_point T>
-RAYPOOL_INLINE T abs(T a) {
-    return std::fabs(a);
-}
-template <std::floating_point T>
-RAYPOOL_INLINE T copysign(T magnitude, T sign) {
-    return std::copysign(magnitude, sign);
-}
-
 /// a b + c, rounded once.
 template <Simd V>
 RAYPOOL_INLINE V mad(const V& a, const V& b, const V& c) {
@@ -222,36 +201,83 @@ template <Simd V>
 RAYPOOL_INLINE V nmad(const V& a, const V& b, const V& c) {
     return std::bit_cast<V>(x86::fnmadd(detail::reg(a), detail::reg(b), detail::reg(c)));
 }
-/// a < b ? a : b, so b when either is NaN.
-template <Simd V>
-RAYPOOL_INLINE V min(const V& a, const V& b) {
-    return std::bit_cast<V>(x86::min(detail::reg(a), detail::reg(b)));
-}
-/// a > b ? a : b, so b when either is NaN.
-template <Simd V>
-RAYPOOL_INLINE V max(const V& a, const V& b) {
-    return std::bit_cast<V>(x86::max(detail::reg(a), detail::reg(b)));
-}
-template <Simd V>
-RAYPOOL_INLINE V sqrt(const V& a) {
-    return std::bit_cast<V>(x86::sqrt(detail::reg(a)));
-}
-template <Simd V>
-RAYPOOL_INLINE V floor(const V& a) {
-    return std::bit_cast<V>(x86::floor(detail::reg(a)));
-}
-template <Simd V>
-RAYPOOL_INLINE V abs(const V& a) {
-    using Register = detail::IntegerRegister<V>;
-    return std::bit_cast<V>(x86::bit_and(std::bit_cast<Register>(a), ~std::bit_cast<Register>(V(-0.0F))));
-}
-template <Simd V>
-RAYPOOL_INLINE V copysign(const V& magnitude, const V& sign) {
-    using Register = detail::IntegerRegister<V>;
-    const Register sign_bit = std::bit_cast<Register>(V(-0.0F));
-    return std::bit_cast<V>(x86::bit_or(x86::bit_and(std::bit_cast<Register>(magnitude), ~sign_bit),
-                                        x86::bit_and(std::bit_cast<Register>(sign), sign_bit)));
-}
+// These are objects, not functions: the arguments of an unqualified call would bring in the functions of the same name
+// of std::experimental, and those take other values for NaN and for zeros of either sign.
+namespace detail {
+
+struct Minimum {
+    template <class Real>
+    RAYPOOL_INLINE Real operator()(const Real& a, const Real& b) const {
+        if constexpr (Simd<Real>) {
+            return std::bit_cast<Real>(x86::min(reg(a), reg(b)));
+        } else {
+            return a < b ? a : b;
+        }
+    }
+};
+struct Maximum {
+    template <class Real>
+    RAYPOOL_INLINE Real operator()(const Real& a, const Real& b) const {
+        if constexpr (Simd<Real>) {
+            return std::bit_cast<Real>(x86::max(reg(a), reg(b)));
+        } else {
+            return a > b ? a : b;
+        }
+    }
+};
+struct SquareRoot {
+    template <class Real>
+    RAYPOOL_INLINE Real operator()(const Real& a) const {
+        if constexpr (Simd<Real>) {
+            return std::bit_cast<Real>(x86::sqrt(reg(a)));
+        } else {
+            return std::sqrt(a);
+        }
+    }
+};
+struct Floor {
+    template <class Real>
+    RAYPOOL_INLINE Real operator()(const Real& a) const {
+        if constexpr (Simd<Real>) {
+            return std::bit_cast<Real>(x86::floor(reg(a)));
+        } else {
+            return std::floor(a);
+        }
+    }
+};
+struct Absolute {
+    template <class Real>
+    RAYPOOL_INLINE Real operator()(const Real& a) const {
+        if constexpr (Simd<Real>) {
+            using Register = IntegerRegister<Real>;
+            return std::bit_cast<Real>(x86::bit_and(std::bit_cast<Register>(a), ~std::bit_cast<Register>(Real(-0.0F))));
+        } else {
+            return std::fabs(a);
+        }
+    }
+};
+struct CopySign {
+    template <class Real>
+    RAYPOOL_INLINE Real operator()(const Real& magnitude, const Real& sign) const {
+        if constexpr (Simd<Real>) {
+            using Register = IntegerRegister<Real>;
+            const Register sign_bit = std::bit_cast<Register>(Real(-0.0F));
+            return std::bit_cast<Real>(x86::bit_or(x86::bit_and(std::bit_cast<Register>(magnitude), ~sign_bit),
+                                                   x86::bit_and(std::bit_cast<Register>(sign), sign_bit)));
+        } else {
+            return std::copysign(magnitude, sign);
+        }
+    }
+};
+
+}  // namespace detail
+
+inline constexpr detail::Minimum min{};  ///< a < b ? a : b, so b when either is NaN
+inline constexpr detail::Maximum max{};  ///< a > b ? a : b, so b when either is NaN
+inline constexpr detail::SquareRoot sqrt{};
+inline constexpr detail::Floor floor{};
+inline constexpr detail::Absolute abs{};
+inline constexpr detail::CopySign copysign{};  ///< (magnitude, sign)
 
 // Conversion. Values must be in range of the target; callers clamp first.
 
@@ -291,6 +317,32 @@ RAYPOOL_INLINE auto lane(const V& v, int i) {
         return static_cast<typename V::value_type>(v[i]);
     } else {
         return v;
+    }
+}
+
+/// Stores the lanes whose bit is set in `bits` one after the other. May write garbage over the rest of a whole vector,
+/// so the target has room for one. (A register is compressed and then stored whole: a compressing store is slow.)
+template <class V, class T>
+RAYPOOL_INLINE void compress_store(T* target, const V& v, unsigned bits) {
+    static_assert(sizeof(V) == sizeof(T) * (Simd<V> ? sizeof(V) / sizeof(T) : 1));
+    if constexpr (!Simd<V>) {
+        if (bits != 0) *target = v;
+    } else if constexpr (sizeof(T) == 4) {
+        const auto packed = x86::compress32(std::bit_cast<detail::IntegerRegister<V>>(v), bits);
+        std::bit_cast<V>(packed).copy_to(target, stdx::element_aligned);
+    } else {
+        const auto packed = x86::compress64(std::bit_cast<detail::IntegerRegister<V>>(v), bits);
+        std::bit_cast<V>(packed).copy_to(target, stdx::element_aligned);
+    }
+}
+
+/// 0, 1, 2, ... by lane.
+template <class Real>
+RAYPOOL_INLINE Uint32<Real> lane_numbers() {
+    if constexpr (Simd<Real>) {
+        return Uint32<Real>([](auto i) { return static_cast<std::uint32_t>(i); });
+    } else {
+        return 0;
     }
 }
 

@@ -6,17 +6,11 @@
 
 #include "core/compiled_scene.h"
 #include "core/materials.h"
+#include "core/path.h"
 #include "core/shapes.h"
 #include "core/textures.h"
 
 namespace raypool {
-
-/// Which path this is; with the bounce it is the key of its random numbers.
-template <class Real>
-struct PathKey {
-    Uint32<Real> pixel;  ///< row * width + column
-    Uint32<Real> sample;
-};
 
 /// Radiance from the direction of a ray that met nothing.
 template <class Real>
@@ -69,7 +63,7 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const CompiledScene<ScalarOf<Real>>& sc
     if constexpr (!needs.checker && !needs.uv) return colour;
 
     const auto is_kind = [&](Texture::Kind kind) { return is_wanted && row[Row::kTexture] == Real(S(kind)); };
-    const Mask<Real> is_checker_3d = is_kind(Texture::Kind::Checker3d);
+    const Mask<Real> is_checker_3d = needs.checker ? is_kind(Texture::Kind::Checker3d) : Mask<Real>(false);
     const Mask<Real> is_checker_uv = needs.uv ? is_kind(Texture::Kind::CheckerUv) : Mask<Real>(false);
     const Mask<Real> is_image = needs.uv ? is_kind(Texture::Kind::Image) : Mask<Real>(false);
 
@@ -123,6 +117,9 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const CompiledScene<ScalarOf<Real>>& sc
     return colour;
 }
 
+/// Whether glass may send a path both ways instead of drawing one of them.
+enum class Splitting : bool { Off, On };
+
 /// A path after a hit.
 template <class Real>
 struct Scattered {
@@ -131,14 +128,22 @@ struct Scattered {
     Vec3<Real> throughput;  ///< where is_emitter: the radiance that the path brings home
     Mask<Real> is_alive;    ///< the path goes on
     Mask<Real> is_emitter;  ///< the path ends on an emitter
+
+    // With Splitting::On, and where is_split: the above is the refracted branch, and there is a reflected one.
+    Mask<Real> is_split;
+    Vec3<Real> reflected_direction;
+    Vec3<Real> reflected_throughput;
+    Mask<Real> is_reflected_alive;
 };
 
 /// Scatters rays that hit primitive `primitive_id` (valid in every lane, also those the caller ignores) at distance t.
-/// `bounce` counts hits from 0. A path that can carry nothing any more is not alive.
-template <SceneNeeds needs, class Real>
+/// `step` is the path's (path_step). A path that can carry nothing any more is not alive. With Splitting::On, the first
+/// `split_depth` hits on glass split a path in two, weighted by Fresnel's reflectance.
+template <SceneNeeds needs, class Real, Splitting splitting = Splitting::Off>
 RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scene, const Ray<Real>& ray, const Real& t,
                                        const Int<Real>& primitive_id, const Vec3<Real>& throughput,
-                                       const PathKey<Real>& key, const Uint32<Real>& bounce, const RandomSeed& seed) {
+                                       const PathKey<Real>& key, const Uint32<Real>& step, const RandomSeed& seed,
+                                       int split_depth = 0) {
     using S = ScalarOf<Real>;
     using Row = SurfaceRow<S>;
     Real row[Row::kColumns];
@@ -147,7 +152,7 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
 
     const SurfacePoint<Real> point = surface_point<needs, Real>(ray, t, row);
     const std::array<Real, 4> random =
-        random_block<Real>(key.pixel, key.sample, bounce + Uint32<Real>(random_block_id::kBounce), seed);
+        random_block<Real>(key.pixel, key.sample, step + Uint32<Real>(random_block_id::kBounce), seed);
 
     Scattered<Real> out;
     out.origin = point.position;
@@ -162,6 +167,10 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
     // Direction, by material.
     out.direction = point.normal;
     Mask<Real> is_absorbed(false);
+    if constexpr (splitting == Splitting::On) {
+        out.is_split = Mask<Real>(false);
+        out.reflected_direction = out.reflected_throughput = vec3<Real>(Real(0), Real(0), Real(0));
+    }
     const Mask<Real> is_rough = needs.fuzz ? is_metal && row[Row::kParameter] > Real(0) : Mask<Real>(false);
     const Mask<Real> is_diffuse = !(is_glass || is_metal || out.is_emitter);
     Vec3<Real> on_sphere = point.normal;
@@ -183,7 +192,19 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
                     const Real ior = row[Row::kParameter];
                     const Real eta = select(point.is_front, Real(1) / ior, ior);
                     const DielectricSplit<Real> split = dielectric_split<Real>(ray.direction, point.normal, eta);
-                    const Mask<Real> is_refracted = is_glass && random[2] >= split.reflectance;
+                    Mask<Real> is_refracted = is_glass && random[2] >= split.reflectance;
+                    if constexpr (splitting == Splitting::On) {
+                        const Real most_branches(static_cast<S>((1 << split_depth) - 1));
+                        out.is_split =
+                            is_glass && from_uint32<Real>(path_step::branch<Uint32<Real>>(step)) < most_branches;
+                        is_refracted = is_refracted || out.is_split;
+                        out.reflected_direction = mirrored;
+                        const Real transmittance = Real(1) - split.reflectance;
+                        for (int i = 0; i < 3; ++i) {
+                            out.reflected_throughput[i] = throughput[i] * split.reflectance;
+                            out.throughput[i] = select(out.is_split, throughput[i] * transmittance, out.throughput[i]);
+                        }
+                    }
                     direction = select<Real>(is_refracted, split.refracted, direction);
                 }
             }
@@ -191,9 +212,13 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
         }
     }
 
-    const Mask<Real> carries_light =
-        out.throughput[0] > Real(0) || out.throughput[1] > Real(0) || out.throughput[2] > Real(0);
-    out.is_alive = carries_light && !(is_absorbed || out.is_emitter);
+    const auto carries_light = [](const Vec3<Real>& carried) {
+        return carried[0] > Real(0) || carried[1] > Real(0) || carried[2] > Real(0);
+    };
+    out.is_alive = carries_light(out.throughput) && !(is_absorbed || out.is_emitter);
+    if constexpr (splitting == Splitting::On) {
+        out.is_reflected_alive = out.is_split && carries_light(out.reflected_throughput);
+    }
     return out;
 }
 

@@ -163,4 +163,44 @@ RAYPOOL_INLINE void transpose_rows(const float* const (&row)[16], __m512 (&colum
 }
 #endif
 
+/// The lanes whose bit is set in `mask`, moved to the front; what follows them is unspecified.
+#ifdef __AVX512VL__
+RAYPOOL_INLINE __m512i compress32(__m512i v, unsigned mask) {
+    return _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), v);
+}
+RAYPOOL_INLINE __m256i compress32(__m256i v, unsigned mask) {
+    return _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), v);
+}
+RAYPOOL_INLINE __m512i compress64(__m512i v, unsigned mask) {
+    return _mm512_maskz_compress_epi64(static_cast<__mmask8>(mask), v);
+}
+#else
+/// For every mask of 8 lanes, the lanes to take, a byte each.
+struct CompressTable {
+    alignas(64) std::uint64_t lanes[256];
+    constexpr CompressTable() : lanes() {
+        for (unsigned mask = 0; mask < 256; ++mask) {
+            unsigned filled = 0;
+            for (std::uint64_t lane = 0; lane < 8; ++lane)
+                if ((mask >> lane & 1U) != 0) lanes[mask] |= lane << (8 * filled++);
+        }
+    }
+};
+inline constexpr CompressTable kCompressTable;
+RAYPOOL_INLINE __m256i compress32(__m256i v, unsigned mask) {
+    const __m128i lanes = _mm_cvtsi64_si128(static_cast<long long>(kCompressTable.lanes[mask]));
+    return _mm256_permutevar8x32_epi32(v, _mm256_cvtepu8_epi32(lanes));
+}
+RAYPOOL_INLINE __m128i compress32(__m128i v, unsigned mask) {
+    const __m128i lanes = _mm_cvtsi64_si128(static_cast<long long>(kCompressTable.lanes[mask]));
+    return _mm_castps_si128(_mm_permutevar_ps(_mm_castsi128_ps(v), _mm_cvtepu8_epi32(lanes)));
+}
+/// Four 64-bit lanes as pairs of 32-bit ones.
+RAYPOOL_INLINE __m256i compress64(__m256i v, unsigned mask) {
+    constexpr std::uint8_t kPairs[16] = {0x00, 0x03, 0x0c, 0x0f, 0x30, 0x33, 0x3c, 0x3f,
+                                         0xc0, 0xc3, 0xcc, 0xcf, 0xf0, 0xf3, 0xfc, 0xff};
+    return compress32(v, kPairs[mask]);
+}
+#endif
+
 }  // namespace raypool::x86

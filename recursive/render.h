@@ -17,7 +17,7 @@
 namespace raypool::recursive {
 
 /// Bytes of stack that one bounce takes, measured: a ray inside a white sphere bounces for ever.
-template <SceneNeeds needs, class Scalar, class Work>
+template <SceneNeeds needs, class Scalar, class Work, Splitting splitting>
 std::size_t stack_bytes_per_bounce() {
     Scene inside_sphere;
     inside_sphere.width = inside_sphere.height = 1;
@@ -26,8 +26,9 @@ std::size_t stack_bytes_per_bounce() {
     inside_sphere.spheres.emplace_back().radius = 10;
     const CompiledScene<Scalar> scene = compile<Scalar>(inside_sphere);
     const auto deepest = [&](std::int32_t depth) {
-        Tracer<needs, Scalar, Work> tracer(scene, random_seed(0), depth);
-        tracer.template sample<Form::Recursive>(0, 0, 0);
+        Tracer<needs, Scalar, Work, splitting> tracer(scene, random_seed(0), depth, 0, FixedPoint::make(1, 1));
+        FixedRgb sum{};
+        tracer.template sample<Form::Recursive>(0, 0, 0, sum);
         return tracer.deepest_stack();
     };
     constexpr int kBounces = 64;
@@ -38,13 +39,13 @@ std::size_t stack_bytes_per_bounce() {
 inline constexpr std::size_t kStackReserve = 64 * 1024;
 
 /// Refuses a depth that the stack of one of the `threads` threads could not hold.
-template <SceneNeeds needs, class Scalar, class Work>
+template <SceneNeeds needs, class Scalar, class Work, Splitting splitting>
 void check_stack(std::int32_t depth, int threads) {
     std::size_t left = std::numeric_limits<std::size_t>::max();
 #pragma omp parallel num_threads(threads) reduction(min : left)
     left = stack_bytes_left();
 
-    const std::size_t per_bounce = stack_bytes_per_bounce<needs, Scalar, Work>();
+    const std::size_t per_bounce = stack_bytes_per_bounce<needs, Scalar, Work, splitting>();
     const std::size_t held = left < kStackReserve ? 0 : (left - kStackReserve) / per_bounce;
     if (static_cast<std::size_t>(depth) < held) return;
     constexpr std::size_t kMegabyte = 1024 * 1024;
@@ -56,14 +57,15 @@ void check_stack(std::int32_t depth, int threads) {
                     depth, wanted, per_bounce, held == 0 ? 0 : held - 1, wanted * 1024, wanted));
 }
 
-template <Form form, SceneNeeds needs, class Scalar, class Work>
+template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting = Splitting::Off>
 RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {
-    if constexpr (form == Form::Recursive) check_stack<needs, Scalar, Work>(settings.depth, settings.threads);
-
+    if constexpr (form == Form::Recursive) {
+        check_stack<needs, Scalar, Work, splitting>(settings.depth, settings.threads);
+    }
     const WorkItems items(scene.width, scene.height, settings.grain);
     return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
-        Tracer<needs, Scalar, Work> tracer(scene, random_seed(settings.seed), settings.depth);
-        SampleConverter converter(framebuffer.fixed_point());
+        Tracer<needs, Scalar, Work, splitting> tracer(scene, random_seed(settings.seed), settings.depth,
+                                                      settings.split_depth, framebuffer.fixed_point());
         ProgressBatch progress(settings.progress);
 
 #pragma omp for schedule(runtime) nowait
@@ -72,10 +74,8 @@ RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& se
             for (std::int64_t y = range.y_begin; y < range.y_end; ++y) {
                 for (std::int64_t x = range.x_begin; x < range.x_end; ++x) {
                     FixedRgb sum{};
-                    for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s) {
-                        const FixedRgb fixed = converter.convert<Scalar>(tracer.template sample<form>(x, y, s));
-                        for (int i = 0; i < 3; ++i) sum[i] += fixed[i];
-                    }
+                    for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s)
+                        tracer.template sample<form>(x, y, s, sum);
                     framebuffer.add(y * scene.width + x, sum);
                     work.paths += settings.end_sample - settings.first_sample;
                     progress.add(settings.end_sample - settings.first_sample);
@@ -85,13 +85,15 @@ RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& se
         work.segments = tracer.segments();
         work.box_tests = tracer.work().box_tests;
         work.primitive_tests = tracer.work().primitive_tests;
-        audit = converter.audit();
+        audit = tracer.audit();
     });
 }
 
-/// Picks the code compiled for what the scene needs. Counting changes no decision, so it is compiled once, for all.
+/// Picks the code compiled for what the scene needs. Counting and splitting are compiled once each, for all needs.
 template <Form form, class Scalar>
 RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {
+    if (settings.split_depth > 0)
+        return render<form, kEverything, Scalar, WorkCount, Splitting::On>(scene, settings, framebuffer);
     if (settings.count_work) return render<form, kEverything, Scalar, WorkCount>(scene, settings, framebuffer);
     return dispatch_needs(scene.needs, [&]<SceneNeeds needs>() {
         return render<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);

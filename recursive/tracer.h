@@ -1,12 +1,14 @@
 /// The per-pixel tracer: one path from the camera to its end, as a function that calls itself or as a loop.
 ///
 /// Both forms are here, and differ in nothing but that. All physics is in core/: a step is "what is hit, and what
-/// then". Throughput is handed down the path and radiance handed back unchanged, so both forms, and any other engine,
-/// multiply in the same order and agree to the last bit.
+/// then". Throughput is handed down the path and multiplied in one order, and a path's end adds its radiance, as an
+/// integer, to the sum of its pixel. So both forms, and any other engine, agree to the last bit.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
+#include "core/framebuffer.h"
 #include "core/shade.h"
 #include "core/traverse.h"
 #include "recursive/stack.h"
@@ -22,83 +24,116 @@ struct Path {
     Vec3<Scalar> throughput;
     PathKey<Scalar> key;
     std::int32_t leaving_id;  ///< the primitive the ray starts on
-    std::int32_t bounce;      ///< segments already traced
+    std::uint32_t step;       ///< path_step: hits so far, and the branch
 };
 
+/// What follows a segment.
+enum class Next : std::uint8_t { End, OnePath, TwoPaths };
+
 /// Traces paths for one thread. `Work` counts box and primitive tests, or nothing.
-template <SceneNeeds needs, class Scalar, class Work>
+template <SceneNeeds needs, class Scalar, class Work, Splitting splitting>
 class Tracer {
   public:
-    Tracer(const CompiledScene<Scalar>& scene, RandomSeed seed, std::int32_t depth)
-        : scene_(scene), seed_(seed), depth_(depth) {}
+    Tracer(const CompiledScene<Scalar>& scene, RandomSeed seed, std::int32_t depth, int split_depth,
+           const FixedPoint& fixed)
+        : scene_(scene), seed_(seed), depth_(depth), split_depth_(split_depth), converter_(fixed) {}
 
-    /// The radiance of one sample.
+    /// Adds one sample to `sum`.
     template <Form form>
-    Vec3<Scalar> sample(std::int64_t x, std::int64_t y, std::int64_t sample_id) {
+    void sample(std::int64_t x, std::int64_t y, std::int64_t sample_id, FixedRgb& sum) {
         const PathKey<Scalar> key{static_cast<std::uint32_t>(y * scene_.width + x),
                                   static_cast<std::uint32_t>(sample_id)};
         const Ray<Scalar> ray = camera_ray<needs, Scalar>(scene_.camera, static_cast<Scalar>(x), static_cast<Scalar>(y),
                                                           key.pixel, key.sample, seed_);
+        sum_ = {};
         const Path<Scalar> path{ray, vec3<Scalar>(1, 1, 1), key, kNoPrimitive, 0};
-        return form == Form::Recursive ? recurse(path) : iterate(path);
+        if constexpr (form == Form::Recursive) {
+            recurse(path);
+        } else {
+            iterate(path);
+        }
+        for (int i = 0; i < 3; ++i) sum[i] += sum_[i];
     }
 
     [[nodiscard]] std::int64_t segments() const { return segments_; }
     [[nodiscard]] const Work& work() const { return work_; }
+    [[nodiscard]] const SampleAudit& audit() const { return converter_.audit(); }
     [[nodiscard]] std::uintptr_t deepest_stack() const { return deepest_stack_; }
 
   private:
-    /// What is to be done after a segment.
-    struct Step {
-        bool goes_on;
-        Vec3<Scalar> radiance;  ///< of a path that does not go on
-    };
-
-    /// Radiance by recursion, as in the paper: a bounce is a call.
-    [[gnu::noinline]] Vec3<Scalar> recurse(Path<Scalar> path) {
-        const Step step = advance(path);
-        if (!step.goes_on) {
-            deepest_stack_ = std::min(deepest_stack_, stack_pointer());
-            return step.radiance;
+    /// By recursion, as in the paper: a bounce is a call.
+    [[gnu::noinline]] void recurse(Path<Scalar> path) {
+        if constexpr (splitting == Splitting::Off) {
+            if (advance(path, nullptr) == Next::OnePath) return recurse(path);
+        } else {
+            Path<Scalar> reflected;
+            const Next next = advance(path, &reflected);
+            if (next == Next::TwoPaths) recurse(reflected);
+            if (next != Next::End) return recurse(path);
         }
-        return recurse(path);
+        deepest_stack_ = std::min(deepest_stack_, stack_pointer());
     }
 
     /// The same with a loop in place of the call.
-    Vec3<Scalar> iterate(Path<Scalar> path) {
-        for (;;) {
-            const Step step = advance(path);
-            if (!step.goes_on) return step.radiance;
+    void iterate(Path<Scalar> path) {
+        if constexpr (splitting == Splitting::Off) {
+            while (advance(path, nullptr) != Next::End) {
+            }
+        } else {
+            Path<Scalar> waiting[path_step::kMostSplits + 1];
+            for (int count = 0;;) {
+                const Next next = advance(path, &waiting[count]);
+                if (next == Next::TwoPaths) ++count;
+                if (next == Next::End && count == 0) return;
+                if (next == Next::End) path = waiting[--count];
+            }
         }
     }
 
-    /// Traces one segment and turns the path around its end.
-    RAYPOOL_INLINE Step advance(Path<Scalar>& path) {
-        const Vec3<Scalar> black = vec3<Scalar>(0, 0, 0);
-        if (path.bounce == depth_) return {false, black};
+    /// Traces one segment and turns the path around its end; `reflected` is set when there is a second path.
+    RAYPOOL_INLINE Next advance(Path<Scalar>& path, Path<Scalar>* reflected) {
+        if (path_step::bounce(path.step) == static_cast<std::uint32_t>(depth_)) return Next::End;
         ++segments_;
         const Hit<Scalar> hit = closest_hit<needs>(scene_, path.ray, path.leaving_id, work_);
         if (hit.primitive_id == kNoPrimitive) {
-            const Vec3<Scalar> sky = sky_radiance<Scalar>(scene_.sky, path.ray.direction);
-            return {false, path.throughput.cwiseProduct(sky)};
+            return finish(path.throughput.cwiseProduct(sky_radiance<Scalar>(scene_.sky, path.ray.direction)));
         }
-        const Scattered<Scalar> out =
-            scatter<needs, Scalar>(scene_, path.ray, hit.t, static_cast<Int<Scalar>>(hit.primitive_id), path.throughput,
-                                   path.key, static_cast<std::uint32_t>(path.bounce), seed_);
-        if (out.is_emitter) return {false, out.throughput};
-        if (!out.is_alive) return {false, black};
+        const Scattered<Scalar> out = scatter<needs, Scalar, splitting>(
+            scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key, path.step, seed_, split_depth_);
+        if (out.is_emitter) return finish(out.throughput);
         path.ray.origin = out.origin;
         path.ray.direction = out.direction;
         path.throughput = out.throughput;
         path.leaving_id = static_cast<std::int32_t>(hit.primitive_id);
-        ++path.bounce;
-        return {true, black};
+        ++path.step;
+        if constexpr (splitting == Splitting::On) {
+            if (out.is_split) {
+                *reflected = path;
+                reflected->ray.direction = out.reflected_direction;
+                reflected->throughput = out.reflected_throughput;
+                reflected->step = path_step::reflected_branch(path.step);
+                path.step = reflected->step + (1U << path_step::kBranchShift);
+                if (out.is_alive && out.is_reflected_alive) return Next::TwoPaths;
+                if (out.is_reflected_alive) path = *reflected;
+                return out.is_alive || out.is_reflected_alive ? Next::OnePath : Next::End;
+            }
+        }
+        return out.is_alive ? Next::OnePath : Next::End;
+    }
+
+    Next finish(const Vec3<Scalar>& radiance) {
+        const FixedRgb fixed = converter_.template convert<Scalar>(radiance);
+        for (int i = 0; i < 3; ++i) sum_[i] += fixed[i];
+        return Next::End;
     }
 
     const CompiledScene<Scalar>& scene_;
     RandomSeed seed_;
     std::int32_t depth_;
+    int split_depth_;
     std::int64_t segments_ = 0;
+    FixedRgb sum_{};
+    SampleConverter converter_;
     Work work_;
     std::uintptr_t deepest_stack_ = std::numeric_limits<std::uintptr_t>::max();
 };

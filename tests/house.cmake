@@ -1,5 +1,6 @@
 # Tests of what surrounds the code: the installed package, the documentation, the sanitizer's set-up.
 
+set(Python3_ROOT_DIR /usr)  # the python3 that the distribution's packages (python3-jsonschema) are for
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME documentation
          COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/docs/check_docs.py ${PROJECT_SOURCE_DIR} $<TARGET_FILE:raypool>)

@@ -4,92 +4,23 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfTiledOutputFile.h>
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <png.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 #include "core/error.h"
 #include "core/srgb.h"
+#include "tests/core/image_samples.h"
 #include "tests/core/scratch_folder.h"
 
 namespace raypool {
 namespace {
 
 namespace fs = std::filesystem;
-
-const ImageAttributes kAttributes{{"raypool.hash", "0123456789abcdef"}, {"raypool.settings", "{\"spp\": 4}"}};
-
-/// Values of every magnitude and sign, and all that is odd about floats.
-Image wild_image(std::int64_t width, std::int64_t height) {
-    Image image(width, height);
-    std::uint32_t bits = 1;
-    for (float& value : image.rgb) value = std::bit_cast<float>(bits = bits * 1664525 + 1013904223);
-    constexpr std::array<std::uint32_t, 6> kOdd{0x80000000, 0x7f800000, 0xff800000, 0x7fc00001, 0xffa00000, 1};
-    for (std::size_t i = 0; i < kOdd.size() && i < image.rgb.size(); ++i) image.rgb[i] = std::bit_cast<float>(kOdd[i]);
-    return image;
-}
-
-bool same_bits(const Image& a, const Image& b) {
-    return a.width == b.width && a.height == b.height && a.rgb.size() == b.rgb.size() &&
-           std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(float)) == 0;
-}
-
-/// What reading `path` is refused with; empty if it is not. Any other exception fails the test.
-std::string refusal(const fs::path& path) {
-    try {
-        read_image(path);
-    } catch (const InputError& error) {
-        const std::string text = error.what();
-        EXPECT_EQ(text.find(path.string() + ": cannot read: "), 0U) << text;
-        EXPECT_EQ(text.find('\n'), std::string::npos) << text;
-        return text.substr(path.string().size() + std::strlen(": cannot read: "));
-    }
-    return {};
-}
-
-/// A PNG file of any kind; empty rows for one that ends after its header. Errors abort the test.
-std::string png_of(png_uint_32 width, png_uint_32 height, int bit_depth, int color_type, int interlace, double gamma,
-                   std::vector<std::vector<png_byte>> rows) {
-    std::string text;
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-    png_infop info = png_create_info_struct(png);
-    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-    png_set_write_fn(
-        png, &text,
-        [](png_structp stream, png_bytep data, std::size_t size) {
-            static_cast<std::string*>(png_get_io_ptr(stream))->append(reinterpret_cast<char*>(data), size);
-        },
-        nullptr);
-    png_set_IHDR(png, info, width, height, bit_depth, color_type, interlace, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
-    const std::array<png_color, 2> palette{{{255, 0, 0}, {0, 128, 255}}};
-    const std::array<png_byte, 2> transparency{0, 128};
-    if (color_type == PNG_COLOR_TYPE_PALETTE) {
-        png_set_PLTE(png, info, palette.data(), palette.size());
-        png_set_tRNS(png, info, transparency.data(), transparency.size(), nullptr);
-    }
-    if (gamma > 0) png_set_gAMA(png, info, gamma);
-    png_write_info(png, info);
-    std::vector<png_bytep> pointers;
-    pointers.reserve(rows.size());
-    for (auto& row : rows) pointers.push_back(row.data());
-    if (!rows.empty()) {
-        png_write_image(png, pointers.data());
-        png_write_end(png, info);
-    }
-    png_destroy_write_struct(&png, &info);
-    return text;
-}
 
 TEST(Srgb, FollowsTheStandardsCurve) {
     EXPECT_EQ(srgb_from_linear(0), 0);
@@ -283,151 +214,6 @@ TEST(ImageFile, ReadsHalfFloatsAndExtraChannelsAndShiftedWindowsOfExr) {
     }
 }
 
-TEST(ImageFile, RefusesExrFilesOfAnotherShape) {
-    const ScratchFolder folder;
-    {
-        Imf::Header header(2, 2);
-        header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
-        const std::array<float, 4> values{};
-        Imf::FrameBuffer buffer;
-        buffer.insert("Y", Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow()));
-        Imf::OutputFile file((folder / "grey.exr").c_str(), header);
-        file.setFrameBuffer(buffer);
-        file.writePixels(2);
-    }
-    {
-        Imf::Header header(2, 2);
-        header.channels().insert("R", Imf::Channel(Imf::FLOAT));
-        header.setTileDescription(Imf::TileDescription(2, 2));
-        Imf::TiledOutputFile file((folder / "tiled.exr").c_str(), header);
-    }
-    EXPECT_EQ(refusal(folder / "grey.exr"), "must have channels R, G and B");
-    EXPECT_EQ(refusal(folder / "tiled.exr"),
-              "must be version 2 and one part of scan lines: no tiles, deep data or parts");
-}
-
-TEST(ImageFile, RefusesWhatIsNotAReadableFile) {
-    const ScratchFolder folder;
-    fs::create_directory(folder / "folder.png");
-    set_file_text(folder / "empty.png", "");
-    set_file_text(folder / "empty.exr", "");
-    set_file_text(folder / "empty.pfm", "");
-    set_file_text(folder / "text.png", "this is not a picture");
-    set_file_text(folder / "text.exr", "this is not a picture");
-    set_file_text(folder / "grey.pfm", std::string("Pf\n1 1\n-1.0\n\0\0\0\0", 16));
-    EXPECT_EQ(refusal(folder / "absent.png"), "No such file or directory");
-    EXPECT_EQ(refusal(folder / "folder.png"), "Is a directory");
-    EXPECT_EQ(refusal(folder / "text.png"), "not a PNG file");
-    EXPECT_EQ(refusal(folder / "text.exr"), "not an EXR file");
-    EXPECT_EQ(refusal(folder / "grey.pfm"), "not a PFM file in colour: must begin with PF");
-    for (const char* name : {"empty.png", "empty.exr", "empty.pfm"}) EXPECT_NE(refusal(folder / name), "") << name;
-}
-
-TEST(ImageFile, RefusesAFileCutOffAnywhere) {
-    const ScratchFolder folder;
-    for (const char* name : {"a.png", "a.exr", "a.pfm"}) {
-        write_image(folder / name, wild_image(5, 20), kAttributes);
-        const std::string bytes = file_text(folder / name);
-        ASSERT_EQ(refusal(folder / name), "");
-        for (std::size_t size = 0; size < bytes.size(); ++size) {
-            set_file_text(folder / name, std::string_view(bytes).substr(0, size));
-            ASSERT_NE(refusal(folder / name), "") << name << " cut off after " << size << " of " << bytes.size();
-        }
-    }
-}
-
-TEST(ImageFile, AnyDamagedByteIsReadOrRefusedButNeverCrashes) {
-    const ScratchFolder folder;
-    for (const char* name : {"a.png", "a.exr", "a.pfm"}) {
-        write_image(folder / name, wild_image(3, 18), {{"raypool.hash", "0"}});
-        const std::string bytes = file_text(folder / name);
-        int refused_count = 0;
-        for (std::size_t place = 0; place < bytes.size(); ++place) {
-            for (const int damage : {0x01, 0x80, 0xff}) {
-                std::string damaged = bytes;
-                damaged[place] = static_cast<char>(damaged[place] ^ damage);
-                set_file_text(folder / name, damaged);
-                refused_count += refusal(folder / name) != "";
-            }
-        }
-        EXPECT_GT(refused_count, 10) << name;
-    }
-}
-
-/// Reads in a process of its own; the most memory it took beyond what it began with, in MiB.
-long memory_to_refuse(const fs::path& path) {
-    const auto peak = [] {
-        rusage usage{};
-        ::getrusage(RUSAGE_SELF, &usage);
-        return usage.ru_maxrss / 1024;
-    };
-    std::array<int, 2> channel{};
-    if (::pipe(channel.data()) != 0) return -1;
-    const pid_t child = ::fork();
-    if (child == 0) {
-        const long before = peak();
-        const bool is_refused = refusal(path) != "";
-        const long taken = is_refused ? peak() - before : -1;
-        ::_exit(::write(channel[1], &taken, sizeof taken) == sizeof taken ? 0 : 1);
-    }
-    ::close(channel[1]);
-    long taken = -1;
-    const bool is_answered = ::read(channel[0], &taken, sizeof taken) == sizeof taken;
-    ::close(channel[0]);
-    ::waitpid(child, nullptr, 0);
-    return is_answered ? taken : -1;
-}
-
-TEST(ImageFile, ClaimedDimensionsAreRefusedBeforeMemoryIsSpentOnThem) {
-    const ScratchFolder folder;
-    std::vector<fs::path> hostile;
-    const auto add = [&](const std::string& name, const std::string& bytes) {
-        hostile.push_back(folder / name);
-        set_file_text(hostile.back(), bytes);
-    };
-    for (const char* size : {"65536 16384", "65537 1", "1000000000 1000000000", "4294967296 4294967296", "-1 -1", "0 1",
-                             "99999999999999999999 1", "1e3 1", "4294967297 1"}) {
-        add(fmt::format("{}.pfm", hostile.size()), fmt::format("PF\n{}\n-1.0\n{}", size, std::string(12, '\0')));
-    }
-    const std::array<std::array<png_uint_32, 2>, 4> sizes{
-        {{65536, 16384}, {65537, 1}, {PNG_UINT_31_MAX, PNG_UINT_31_MAX}, {32768, 32768}}};
-    for (const auto& [width, height] : sizes) {
-        add(fmt::format("{}.png", hostile.size()),
-            png_of(width, height, 16, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, 0, {}));
-    }
-    write_image(folder / "good.exr", wild_image(3, 3), {});
-    const std::string exr = file_text(folder / "good.exr");
-    const std::size_t window = exr.find("dataWindow") + sizeof "dataWindow" + sizeof "box2i" + 4;
-    constexpr std::int32_t kMin = std::numeric_limits<std::int32_t>::min();
-    constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max();
-    const std::array<std::array<std::int32_t, 4>, 6> windows{{{0, 0, 65535, 16383},
-                                                              {0, 0, 65536, 0},
-                                                              {0, 0, 16383, 65535},
-                                                              {kMin, kMin, kMax, kMax},
-                                                              {0, 0, -1, -1},
-                                                              {kMax, kMax, kMin, kMin}}};
-    for (const auto& box : windows) {
-        std::string bytes = exr;
-        std::memcpy(bytes.data() + window, box.data(), sizeof box);
-        add(fmt::format("{}.exr", hostile.size()), bytes);
-    }
-    std::string long_attribute = exr;
-    std::memcpy(long_attribute.data() + window - 4, &kMax, 4);
-    add("long.exr", long_attribute);
-    // OpenEXR finds the end of the channel list by itself; who trusts its size of 0 never sees the data window.
-    std::string lost_window = exr;
-    const std::array<std::int32_t, 4> wide{0, 0, 9'999'999, 63};
-    std::memcpy(lost_window.data() + window, &wide, sizeof wide);
-    std::memset(lost_window.data() + exr.find("chlist") + sizeof "chlist", 0, 4);
-    add("lost.exr", lost_window);
-
-    for (const fs::path& path : hostile) {
-        const long taken = memory_to_refuse(path);
-        EXPECT_GE(taken, 0) << path << " was read";
-        EXPECT_LT(taken, 512) << path << ": " << refusal(path);
-    }
-}
-
 TEST(Texture, IsThePngInLinearLight) {
     const ScratchFolder folder;
     set_file_text(folder / "a.png",
@@ -437,25 +223,6 @@ TEST(Texture, IsThePngInLinearLight) {
     EXPECT_EQ(texels->height, 2);
     EXPECT_EQ(texels->rgb, read_image(folder / "a.png").rgb);
     EXPECT_EQ(texels->rgb[0], 1);
-}
-
-TEST(Texture, RefusesWhatIsBrokenOrTooLargeByName) {
-    const ScratchFolder folder;
-    write_image(folder / "wide.png", Image(kMaxTextureSide + 1, 1), {});
-    EXPECT_EQ(refusal(folder / "wide.png"), "");
-    EXPECT_THROW(read_texture(folder / "wide.png"), InputError);
-    write_image(folder / "widest.png", Image(kMaxTextureSide, 1), {});
-    EXPECT_EQ(read_texture(folder / "widest.png")->width, kMaxTextureSide);
-
-    set_file_text(folder / "text.png", "text");
-    try {
-        read_texture(folder / "text.png");
-        ADD_FAILURE();
-    } catch (const InputError& error) {
-        EXPECT_EQ(error.what(), (folder / "text.png").string() + ": cannot read: not a PNG file");
-    }
-    EXPECT_THROW(read_texture(folder / "absent.png"), InputError);
-    EXPECT_THROW(read_texture(folder.path()), InputError);
 }
 
 }  // namespace

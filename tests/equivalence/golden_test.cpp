@@ -1,0 +1,82 @@
+// The committed scenes still make the images that they made when golden_hashes.json was written: on any compiler and
+// for any instruction set. Where an image had to change, write the hashes and pictures anew, look at the pictures, and
+// say in the change why:
+//
+//     RAYPOOL_UPDATE_GOLDEN=1 ctest --preset release --tests-regex Golden
+//
+// The pictures in golden/ are not compared with; they show where an image that fails is different.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/equivalence/same_image.h"
+
+namespace raypool {
+namespace {
+
+const std::filesystem::path kFolder = RAYPOOL_SOURCE_DIR "/tests/equivalence";
+
+nlohmann::json read_hashes() {
+    std::ifstream file(kFolder / "golden_hashes.json");
+    return file ? nlohmann::json::parse(file) : nlohmann::json::object();
+}
+
+std::filesystem::path picture_of(const std::string& scene_name) {
+    return kFolder / "golden" / (scene_name + ".exr");
+}
+
+/// Small, and yet enough paths for every material and texture of the scene to be met.
+template <class Scalar>
+Rendered golden_render(const std::string& scene_name) {
+    const CompiledScene<Scalar> scene = compile<Scalar>(small_scene(scene_name, 40));
+    RenderSettings settings;
+    settings.end_sample = 8;
+    settings.depth = 50;
+    return render(recursive::RecursiveEngine(), scene, settings);
+}
+
+void update(const std::string& scene_name, const Rendered& in_float, const Rendered& in_double) {
+    nlohmann::json hashes = read_hashes();
+    hashes[scene_name] = {{"float", in_float.hash()}, {"double", in_double.hash()}};
+    std::ofstream(kFolder / "golden_hashes.json") << hashes.dump(2) << "\n";
+    std::filesystem::create_directories(kFolder / "golden");
+    write_image(picture_of(scene_name), in_float.image(), {});
+}
+
+class Golden : public testing::TestWithParam<std::string> {};
+
+TEST_P(Golden, ImageIsTheCommittedOne) {
+    const std::string& name = GetParam();
+    const Rendered in_float = golden_render<float>(name);
+    const Rendered in_double = golden_render<double>(name);
+    if (std::getenv("RAYPOOL_UPDATE_GOLDEN") != nullptr) return update(name, in_float, in_double);
+
+    const nlohmann::json hashes = read_hashes();
+    ASSERT_TRUE(hashes.contains(name)) << "no hash of " << name << " is committed";
+    const Image picture = read_image(picture_of(name));
+    for (const auto& [precision, got] : {std::pair{"float", &in_float}, {"double", &in_double}}) {
+        EXPECT_EQ(got->hash(), hashes[name][precision].get<std::string>())
+            << name << " in " << precision << ", beside the committed picture in float: "
+            << leave_difference(fmt::format("golden_{}_{}", name, precision), picture, got->image());
+    }
+}
+
+std::vector<std::string> all_scenes() {
+    std::vector<std::string> names = builtin_scene_names();
+    names.emplace_back("textures");
+    return names;
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(all_scenes()), [](const auto& test) { return test.param; });
+
+TEST(GoldenHashes, AreOfScenesThatExist) {
+    const std::vector<std::string> scenes = all_scenes();
+    for (const auto& [name, hashes] : read_hashes().items())
+        EXPECT_NE(std::find(scenes.begin(), scenes.end(), name), scenes.end()) << name;
+}
+
+}  // namespace
+}  // namespace raypool

@@ -1,0 +1,66 @@
+/// Small renders for tests of whole images: the committed scenes at a size of choice, their sums and their hash.
+///
+/// Called by tests/equivalence/ and tests/physics/.
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "core/engine.h"
+#include "core/scene_reader.h"
+#include "recursive/engine.h"
+
+namespace raypool {
+
+/// A built-in scene, or `textures`, at another width, in its own shape unless a height is given.
+inline Scene small_scene(const std::string& name, std::int64_t width, std::int64_t height = 0) {
+    Scene scene =
+        name == "textures" ? read_scene(RAYPOOL_SOURCE_DIR "/scenes/textures/textures.json") : builtin_scene(name);
+    scene.height = height > 0 ? height : std::max<std::int64_t>(1, scene.height * width / scene.width);
+    scene.width = width;
+    return scene;
+}
+
+struct Rendered {
+    Framebuffer framebuffer;
+    RenderReport report;
+    std::int64_t sample_count;
+
+    [[nodiscard]] std::string hash() const { return framebuffer.hash(); }
+    [[nodiscard]] Image image() const { return framebuffer.image(sample_count); }
+    /// Mean over all pixels and samples, from the exact sums.
+    [[nodiscard]] double mean(int channel) const {
+        double sum = 0;
+        for (std::int64_t pixel = 0; pixel < framebuffer.width() * framebuffer.height(); ++pixel)
+            sum += static_cast<double>(framebuffer.sums()[static_cast<std::size_t>(3 * pixel + channel)]);
+        const auto samples = static_cast<double>(sample_count * framebuffer.width() * framebuffer.height());
+        return sum / framebuffer.fixed_point().scale() / samples;
+    }
+};
+
+/// Renders into an empty framebuffer with `render_into(framebuffer)`, which returns a RenderReport.
+template <class Scalar, class RenderInto>
+Rendered rendered_by(const CompiledScene<Scalar>& scene, const RenderSettings& settings, RenderInto render_into) {
+    Rendered out{Framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, scene.max_radiance)),
+                 {},
+                 settings.end_sample - settings.first_sample};
+    out.report = render_into(out.framebuffer);
+    return out;
+}
+
+template <class Scalar>
+Rendered render(const Engine& engine, const CompiledScene<Scalar>& scene, const RenderSettings& settings) {
+    return rendered_by(scene, settings,
+                       [&](Framebuffer& framebuffer) { return engine.render(scene, settings, framebuffer); });
+}
+
+/// By the iterative engine, in one thread.
+template <class Scalar>
+Rendered render(const Scene& scene, std::int64_t spp, std::int32_t depth) {
+    RenderSettings settings;
+    settings.end_sample = spp;
+    settings.depth = depth;
+    return render(recursive::IterativeEngine(), compile<Scalar>(scene), settings);
+}
+
+}  // namespace raypool
