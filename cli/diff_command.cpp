@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "core/image_diff.h"
 #include "core/image_file.h"
 #include "core/output_file.h"
@@ -48,7 +49,8 @@ void add_diff_command(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("diff", "Compare two images; exit 1 if any bit differs");
     command->add_option("a", options->a, "Image: .png, .exr or .pfm")->required();
     command->add_option("b", options->b, "The reference, of the same size")->required();
-    command->add_option("-o,--output", options->output, "Image file for the error in false colour");
+    command->add_option("-o,--output", options->output, "Image file for the error in false colour")
+        ->check(check_file_name);
     command->callback([options, &status] { status = diff(*options); });
 }
 

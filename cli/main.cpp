@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN);
     try {
         CLI::App app("Ray pools against recursion on a CPU: one image, two orders of work, measured.", "raypool");
-        app.require_subcommand(1);
+        app.require_subcommand(0, 1);  // a wrong command is then named as an argument that was not expected
         app.set_version_flag("--version", RAYPOOL_VERSION);
         int status = 0;
         raypool::cli::add_render_command(app, status);
@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
             if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
             return fail(2, fmt::format("{} (see --help)", error.what()));
         }
+        if (app.get_subcommands().empty()) return fail(2, "a command is required (see --help)");
         if (std::fflush(stdout) != 0) return fail(1, "cannot write to the standard output");
         return status;
     } catch (const raypool::InputError& error) {

@@ -82,6 +82,28 @@ SampleRange parse_samples(std::string_view text, std::int64_t spp) {
     throw InputError(fmt::format("--samples: must be A:B with 0 <= A < B <= spp ({}), got {}", spp, text));
 }
 
+std::uint64_t parse_seed(std::string_view text) {
+    std::uint64_t seed = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+    if (error != std::errc() || end != text.data() + text.size())
+        throw InputError(fmt::format("--seed: must be a whole number in [0, 2^64), got {}", text));
+    return seed;
+}
+
+int thread_count(int asked) {
+    constexpr int kMostThreads = 4096;
+    const int limit = std::min(omp_get_thread_limit(), kMostThreads);
+    const int count = asked == 0 ? omp_get_max_threads() : asked;
+    if (count > limit)
+        throw InputError(fmt::format("{}: must be at most {}{}, got {}", asked == 0 ? "OMP_NUM_THREADS" : "--threads",
+                                     limit, limit < kMostThreads ? " (OMP_THREAD_LIMIT)" : "", count));
+    return count;
+}
+
+std::string check_file_name(const std::string& text) {
+    return text.empty() ? "must name a file" : "";
+}
+
 LoopSchedule default_schedule() {
     if (std::getenv("OMP_SCHEDULE") == nullptr) return {LoopSchedule::Kind::Dynamic, 0};
     omp_sched_t kind;

@@ -27,6 +27,15 @@ struct SampleRange {
 /// "A:B" with 0 <= A < B <= spp.
 SampleRange parse_samples(std::string_view text, std::int64_t spp);
 
+/// A whole number below 2^64.
+std::uint64_t parse_seed(std::string_view text);
+
+/// Threads as asked for with --threads, or OMP_NUM_THREADS where `asked` is 0. Refuses more than OpenMP would start.
+int thread_count(int asked);
+
+/// Refuses an empty text, which a shell makes of a variable that is not set. For CLI::Option::check().
+std::string check_file_name(const std::string& text);
+
 /// What OMP_SCHEDULE says, and dynamic where it says nothing: equal lines are not equal work.
 LoopSchedule default_schedule();
 

@@ -1,4 +1,3 @@
-#include <omp.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -11,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/pool_options.h"
 #include "cli/progress_bar.h"
 #include "cli/stats_json.h"
 #include "core/error.h"
@@ -18,6 +18,7 @@
 #include "core/output_file.h"
 #include "core/scene_reader.h"
 #include "recursive/engine.h"
+#include "wavefront/engine.h"
 
 namespace raypool::cli {
 
@@ -32,7 +33,7 @@ struct RenderOptions {
     std::int64_t width = 0;  ///< 0: the scene's
     std::int64_t depth = 50;
     int split_depth = 0;
-    std::uint64_t seed = 0;
+    std::string seed = "0";
     std::string samples;
     int threads = 0;  ///< 0: OpenMP's
     std::string schedule;
@@ -40,6 +41,7 @@ struct RenderOptions {
     std::string precision = "float";
     bool count_work = false;
     bool is_quiet = false;
+    PoolOptions pool;
 };
 
 class Stopwatch {
@@ -56,7 +58,8 @@ class Stopwatch {
     Clock::time_point start_ = Clock::now();
 };
 
-std::unique_ptr<Engine> make_engine(const std::string& name) {
+std::unique_ptr<Engine> make_engine(const std::string& name, const wavefront::PoolSettings& pool) {
+    if (name == "wavefront") return std::make_unique<wavefront::WavefrontEngine>(pool);
     if (name == "iterative") return std::make_unique<recursive::IterativeEngine>();
     return std::make_unique<recursive::RecursiveEngine>();
 }
@@ -71,8 +74,8 @@ RenderSettings render_settings(const RenderOptions& options) {
     }
     settings.depth = static_cast<std::int32_t>(options.depth);
     settings.split_depth = options.split_depth;
-    settings.seed = options.seed;
-    settings.threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
+    settings.seed = parse_seed(options.seed);
+    settings.threads = thread_count(options.threads);
     settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
     settings.grain = parse_grain(options.grain);
     settings.count_work = options.count_work;
@@ -114,6 +117,9 @@ void print_summary(const RenderRecord& record) {
         fmt::print("{:.2f} box tests and {:.2f} primitive tests a segment\n",
                    static_cast<double>(report.total(&ThreadWork::box_tests)) / segments,
                    static_cast<double>(report.total(&ThreadWork::primitive_tests)) / segments);
+    if (report.pool_bytes > 0)
+        fmt::print("ray record of {} bytes; pools at most {:.2f} MB\n", report.record_bytes,
+                   static_cast<double>(report.pool_bytes) / (1024 * 1024));
     if (report.audit.non_finite > 0 || report.audit.clamped > 0)
         fmt::print("bad samples: {} not finite and left out, {} channels cut (radiance {:.6g} in all)\n",
                    report.audit.non_finite, report.audit.clamped, report.audit.clamped_energy);
@@ -133,7 +139,7 @@ Image render_scene(const Scene& scene, bool is_quiet, RenderRecord& record) {
     const std::int64_t sample_count = record.settings.end_sample - record.settings.first_sample;
     {
         const ProgressBar bar(progress, compiled.pixel_count() * sample_count, is_quiet);
-        record.report = make_engine(record.engine)->render(compiled, record.settings, framebuffer);
+        record.report = make_engine(record.engine, record.pool)->render(compiled, record.settings, framebuffer);
     }
     record.settings.progress = nullptr;
     record.hash = framebuffer.hash();
@@ -147,6 +153,7 @@ void render(const RenderOptions& options) {
     record.spp = options.spp;
     record.precision = options.precision == "double" ? Precision::Double : Precision::Float;
     record.engine = options.engine;
+    record.pool = pool_settings(options.pool);
     if (!options.output.empty()) {
         image_format(options.output);
         check_writable(options.output);
@@ -182,9 +189,10 @@ void add_render_command(CLI::App& app, int&) {
     CLI::App* command = app.add_subcommand("render", "Render a scene, print its figures and the hash of its sums");
     constexpr std::int64_t kMostSpp = std::numeric_limits<std::int32_t>::max();
     command->add_option("scene", options->scene, "Scene file, or the name of a built-in scene (default: paper)");
-    command->add_option("-o,--output", options->output, "Image file: .png (sRGB), .exr or .pfm (linear)");
+    command->add_option("-o,--output", options->output, "Image file: .png (sRGB), .exr or .pfm (linear)")
+        ->check(check_file_name);
     command->add_option("--engine", options->engine, "How paths are followed (default: recursive)")
-        ->check(CLI::IsMember({"recursive", "iterative"}));
+        ->check(CLI::IsMember({"recursive", "iterative", "wavefront"}));
     command->add_option("--spp", options->spp, "Samples per pixel (default: 100)")
         ->check(CLI::Range(std::int64_t{1}, kMostSpp));
     command->add_option("--samples", options->samples, "Only samples A:B of them, counted from 0, without B");
@@ -192,8 +200,9 @@ void add_render_command(CLI::App& app, int&) {
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
     command->add_option("--depth", options->depth, "Most segments of a path (default: 50)")
         ->check(CLI::Range(std::int64_t{0}, std::int64_t{path_step::kMostBounces}));
-    command->add_option("--split-depth", options->split_depth,
-                        "At so many first hits on glass follow both the reflected and the refracted ray (default: 0)")
+    command
+        ->add_option("--split-depth", options->split_depth,
+                     "At so many first hits on glass follow both the reflected and the refracted ray (default: 0)")
         ->check(CLI::Range(0, path_step::kMostSplits));
     command->add_option("--seed", options->seed, "Seed of all random numbers (default: 0)");
     command->add_option("--precision", options->precision, "Numbers of the kernels (default: float)")
@@ -204,8 +213,9 @@ void add_render_command(CLI::App& app, int&) {
                         "static, dynamic or guided, and a chunk: dynamic,4 (default: OMP_SCHEDULE, else dynamic)");
     command->add_option("--grain", options->grain,
                         "What a loop iteration renders: pixel, line or tile:N (default: line)");
+    add_pool_options(*command, options->pool);
     command->add_flag("--count-work", options->count_work, "Count box and primitive tests (slower)");
-    command->add_option("--stats", options->stats, "Write all figures to this file, as JSON");
+    command->add_option("--stats", options->stats, "Write all figures to this file, as JSON")->check(check_file_name);
     command->add_flag("--quiet", options->is_quiet, "Print nothing");
     command->callback([options] { render(*options); });
 }

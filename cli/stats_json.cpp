@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/pool_options.h"
 #include "core/environment.h"
 #include "core/output_file.h"
 
@@ -11,20 +12,22 @@ using nlohmann::json;
 
 json settings_json(const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
-    return {{"scene", record.scene_name},
-            {"width", record.width},
-            {"height", record.height},
-            {"spp", record.spp},
-            {"samples", {settings.first_sample, settings.end_sample}},
-            {"depth", settings.depth},
-            {"split_depth", settings.split_depth},
-            {"seed", settings.seed},
-            {"precision", record.precision == Precision::Float ? "float" : "double"},
-            {"engine", record.engine},
-            {"threads", settings.threads},
-            {"schedule", to_string(settings.schedule)},
-            {"grain", to_string(settings.grain)},
-            {"count_work", settings.count_work}};
+    json result{{"scene", record.scene_name},
+                {"width", record.width},
+                {"height", record.height},
+                {"spp", record.spp},
+                {"samples", {settings.first_sample, settings.end_sample}},
+                {"depth", settings.depth},
+                {"split_depth", settings.split_depth},
+                {"seed", settings.seed},
+                {"precision", record.precision == Precision::Float ? "float" : "double"},
+                {"engine", record.engine},
+                {"threads", settings.threads},
+                {"schedule", to_string(settings.schedule)},
+                {"grain", to_string(settings.grain)},
+                {"count_work", settings.count_work}};
+    if (record.engine == "wavefront") result["pool"] = to_json(record.pool);
+    return result;
 }
 
 json stats_json(const RenderRecord& record) {
@@ -44,25 +47,40 @@ json stats_json(const RenderRecord& record) {
         }
         threads.push_back(thread);
     }
-    return {{"hash", record.hash},
-            {"seconds",
-             {{"read", record.read_s},
-              {"compile", record.compile_s},
-              {"render", report.seconds},
-              {"write", record.write_s},
-              {"total", record.total_s}}},
-            {"paths", report.paths()},
-            {"segments", report.segments()},
-            {"segments_per_path", segments / paths},
-            {"mpaths_per_s", paths / report.seconds * 1e-6},
-            {"audit",
-             {{"non_finite", report.audit.non_finite},
-              {"clamped", report.audit.clamped},
-              {"clamped_energy", report.audit.clamped_energy}}},
-            {"needs", feature_names(record.needs)},
-            {"settings", settings_json(record)},
-            {"environment", environment_json()},
-            {"threads", threads}};
+    json rounds = json::array();
+    for (const RoundWork& work : report.rounds) {
+        json round{{"records_in", work.records_in},
+                   {"records_out", work.records_out},
+                   {"lanes", work.lanes},
+                   {"wait_s", work.wait_s}};
+        for (std::size_t i = 0; i < kStageCount; ++i) round["stage_s"][kStageNames[i]] = work.stage_s[i];
+        rounds.push_back(round);
+    }
+    json stats{{"hash", record.hash},
+               {"seconds",
+                {{"read", record.read_s},
+                 {"compile", record.compile_s},
+                 {"render", report.seconds},
+                 {"write", record.write_s},
+                 {"total", record.total_s}}},
+               {"paths", report.paths()},
+               {"segments", report.segments()},
+               {"segments_per_path", segments / paths},
+               {"mpaths_per_s", paths / report.seconds * 1e-6},
+               {"audit",
+                {{"non_finite", report.audit.non_finite},
+                 {"clamped", report.audit.clamped},
+                 {"clamped_energy", report.audit.clamped_energy}}},
+               {"needs", feature_names(record.needs)},
+               {"settings", settings_json(record)},
+               {"environment", environment_json()},
+               {"threads", threads}};
+    if (record.engine == "wavefront") {
+        stats["record_bytes"] = report.record_bytes;
+        stats["pool_bytes"] = report.pool_bytes;
+        stats["rounds"] = rounds;
+    }
+    return stats;
 }
 
 void write_json(const std::filesystem::path& path, const json& json) {

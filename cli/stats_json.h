@@ -8,6 +8,7 @@
 
 #include "cli/options.h"
 #include "core/engine.h"
+#include "wavefront/settings.h"
 
 namespace raypool::cli {
 
@@ -21,6 +22,7 @@ struct RenderRecord {
     Precision precision = Precision::Float;
     std::string engine;
     RenderSettings settings;
+    wavefront::PoolSettings pool;  ///< of the wavefront engine
     RenderReport report;
     std::string hash;
     double read_s = 0;     ///< scene file to description

@@ -4,6 +4,7 @@
 /// depth and sample range, every engine and every setting of the loop makes the same sums.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <string>
@@ -47,20 +48,46 @@ struct RenderSettings {
     Progress* progress = nullptr;
 };
 
+/// The stages of a round of a wavefront engine.
+enum class Stage : std::uint8_t { Generate, Intersect, Sort, Shade, Accumulate };
+inline constexpr std::size_t kStageCount = 5;
+inline constexpr std::array<const char*, kStageCount> kStageNames{"generate", "intersect", "sort", "shade",
+                                                                  "accumulate"};
+
+/// One round of a wavefront engine: all threads, or, of per-thread pools, the rounds of that number added up.
+struct RoundWork {
+    std::int64_t records_in = 0;                ///< advanced by one bounce
+    std::int64_t records_out = 0;               ///< of these, alive afterwards
+    std::int64_t lanes = 0;                     ///< used for them: records_in / lanes is the occupancy of the registers
+    std::array<double, kStageCount> stage_s{};  ///< added over threads
+    double wait_s = 0;                          ///< at barriers, added over threads
+
+    void add(const RoundWork& other) {
+        records_in += other.records_in;
+        records_out += other.records_out;
+        lanes += other.lanes;
+        for (std::size_t i = 0; i < kStageCount; ++i) stage_s[i] += other.stage_s[i];
+        wait_s += other.wait_s;
+    }
+};
+
 /// What one thread did. A cache line each, so that counting does not make threads wait for each other.
 struct alignas(64) ThreadWork {
     std::int64_t paths = 0;
     std::int64_t segments = 0;         ///< rays traced, camera rays included
     std::int64_t box_tests = 0;        ///< with count_work
     std::int64_t primitive_tests = 0;  ///< with count_work
-    double busy_s = 0;                 ///< within the loop
-    double wait_s = 0;                 ///< at the end of the loop, for the others
+    double busy_s = 0;                 ///< working
+    double wait_s = 0;                 ///< waiting for the others
 };
 
 struct RenderReport {
     double seconds = 0;  ///< wall clock of the parallel region
     std::vector<ThreadWork> threads;
     SampleAudit audit;
+    std::vector<RoundWork> rounds;  ///< of a wavefront engine, with count_work
+    std::size_t record_bytes = 0;   ///< of a wavefront engine: moved in and out of the pool by a record
+    std::size_t pool_bytes = 0;     ///< of a wavefront engine: all pools, streams and accumulators at their largest
 
     [[nodiscard]] std::int64_t paths() const { return total(&ThreadWork::paths); }
     [[nodiscard]] std::int64_t segments() const { return total(&ThreadWork::segments); }

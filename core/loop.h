@@ -81,7 +81,7 @@ RenderReport run_threads(const RenderSettings& settings, Body body) {
         ThreadWork work;
         const double begin = omp_get_wtime();
         body(work, audits[id]);
-        work.busy_s = omp_get_wtime() - begin;
+        work.busy_s = omp_get_wtime() - begin - work.wait_s;
         report.threads[id] = work;
     }
     report.seconds = omp_get_wtime() - start;

@@ -31,7 +31,8 @@ constexpr RandomSeed random_seed(std::uint64_t seed) {
 namespace random_block_id {
 inline constexpr std::uint32_t kFilm = 0;     ///< 0, 1: place in the pixel; 2, 3: place on the lens
 inline constexpr std::uint32_t kShutter = 1;  ///< 0: time
-inline constexpr std::uint32_t kBounce = 2;   ///< kBounce + the path's step (shade.h). 0, 1: direction; 2: reflect or refract
+inline constexpr std::uint32_t kBounce =
+    2;  ///< kBounce + the path's step (shade.h). 0, 1: direction; 2: reflect or refract
 }  // namespace random_block_id
 
 /// Four numbers in [0, 1), each a multiple of 2^-24 (so that no float rounds up to 1). `pixel` counts row by row.

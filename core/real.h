@@ -368,4 +368,20 @@ RAYPOOL_INLINE void load_rows(const ScalarOf<Real>* table, int stride, const Int
     }
 }
 
+/// The inverse of load_rows for consecutive rows: row[lane * count + k] = column[k] of that lane.
+template <int count, class Real>
+RAYPOOL_INLINE void store_rows(ScalarOf<Real>* rows, const Real* column) {
+    static_assert(count % 4 == 0);
+    if constexpr (Simd<Real> && std::same_as<ScalarOf<Real>, float>) {
+        for (int first = 0; first < count; first += 4) {
+            detail::RealRegister<Real> block[4];
+            for (int k = 0; k < 4; ++k) block[k] = detail::reg(column[first + k]);
+            x86::store_transposed(block, rows + first, count);
+        }
+    } else {
+        for (int k = 0; k < count; ++k)
+            for (int i = 0; i < kLanes<Real>; ++i) rows[i * count + k] = lane(column[k], i);
+    }
+}
+
 }  // namespace raypool

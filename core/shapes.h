@@ -100,7 +100,9 @@ RAYPOOL_INLINE Real sphere_distance(const Vec3<Real>& origin, const Vec3<Real>& 
     const Real discriminant =
         nmad<Real>(closest[0], closest[0],
                    nmad<Real>(closest[1], closest[1], nmad<Real>(closest[2], closest[2], radius * radius)));
-    const Mask<Real> is_met = discriminant >= Real(0);
+    // What leaves the sphere inward meets it again, even where rounding put its origin outside. A NaN is never met.
+    // (One comparison: of `d >= 0 || (is_leaving && d < 0)` gcc 12 makes `d >= 0 || is_leaving`.)
+    const Mask<Real> is_met = discriminant >= select(is_leaving, -Real(kInfinity<Real>), Real(0));
     if (none(is_met)) return Real(kInfinity<Real>);
 
     const Real root = sqrt(max(discriminant, Real(0)));
@@ -114,8 +116,9 @@ RAYPOOL_INLINE Real sphere_distance(const Vec3<Real>& origin, const Vec3<Real>& 
     const Real third = min(x, y);
     const Real c = mad<Real>(m - radius, m + radius, mad<Real>(second, second, third * third));
 
-    // From outside (c > 0) the first root is c / q, in front if b > 0; from inside the positive one of q and c / q.
-    const Real t = select(c <= Real(0) && b > Real(0), q, c / q);
+    // From outside (c > 0) the first root is c / q, in front if b > 0; from inside the positive one of q and c / q,
+    // which is q at b = 0 too.
+    const Real t = select(c <= Real(0) && q > Real(0), q, c / q);
     const Real t_or_second = select(is_leaving, b + b, t);
     return select(is_met && t_or_second > Real(0), t_or_second, Real(kInfinity<Real>));
 }

@@ -163,6 +163,33 @@ RAYPOOL_INLINE void transpose_rows(const float* const (&row)[16], __m512 (&colum
 }
 #endif
 
+/// The inverse: lane i of the four columns goes to rows[i * stride .. + 3].
+RAYPOOL_INLINE void store_transposed(const __m256 (&column)[4], float* rows, int stride) {
+    const __m256 t0 = _mm256_unpacklo_ps(column[0], column[1]), t1 = _mm256_unpackhi_ps(column[0], column[1]);
+    const __m256 t2 = _mm256_unpacklo_ps(column[2], column[3]), t3 = _mm256_unpackhi_ps(column[2], column[3]);
+    const __m256 row[4] = {_mm256_shuffle_ps(t0, t2, 0x44), _mm256_shuffle_ps(t0, t2, 0xee),
+                           _mm256_shuffle_ps(t1, t3, 0x44), _mm256_shuffle_ps(t1, t3, 0xee)};
+    for (int i = 0; i < 4; ++i) {
+        _mm_storeu_ps(rows + i * stride, _mm256_castps256_ps128(row[i]));
+        _mm_storeu_ps(rows + (i + 4) * stride, _mm256_extractf128_ps(row[i], 1));
+    }
+}
+
+#ifdef __AVX512F__
+RAYPOOL_INLINE void store_transposed(const __m512 (&column)[4], float* rows, int stride) {
+    const __m512 t0 = _mm512_unpacklo_ps(column[0], column[1]), t1 = _mm512_unpackhi_ps(column[0], column[1]);
+    const __m512 t2 = _mm512_unpacklo_ps(column[2], column[3]), t3 = _mm512_unpackhi_ps(column[2], column[3]);
+    const __m512 row[4] = {_mm512_shuffle_ps(t0, t2, 0x44), _mm512_shuffle_ps(t0, t2, 0xee),
+                           _mm512_shuffle_ps(t1, t3, 0x44), _mm512_shuffle_ps(t1, t3, 0xee)};
+    for (int i = 0; i < 4; ++i) {
+        _mm_storeu_ps(rows + i * stride, _mm512_castps512_ps128(row[i]));
+        _mm_storeu_ps(rows + (i + 4) * stride, _mm512_extractf32x4_ps(row[i], 1));
+        _mm_storeu_ps(rows + (i + 8) * stride, _mm512_extractf32x4_ps(row[i], 2));
+        _mm_storeu_ps(rows + (i + 12) * stride, _mm512_extractf32x4_ps(row[i], 3));
+    }
+}
+#endif
+
 /// The lanes whose bit is set in `mask`, moved to the front; what follows them is unspecified.
 #ifdef __AVX512VL__
 RAYPOOL_INLINE __m512i compress32(__m512i v, unsigned mask) {

@@ -23,12 +23,20 @@ struct WorkCount {
     void count(const Block& block) {
         for (const std::int32_t id : block.id) primitive_tests += id != kNoPrimitive ? 1 : 0;
     }
+    /// Child `lane` of a node, for the rays set in `rays`.
+    template <class Scalar, int width>
+    void count_boxes(const WideNode<Scalar, width>& node, int lane, unsigned rays) {
+        if (node.bounds[0][0][lane] <= node.bounds[0][1][lane]) box_tests += std::popcount(rays);
+    }
+    void count_primitives(int rays) { primitive_tests += rays; }
 };
 
 struct NoWorkCount {
     static constexpr std::int64_t box_tests = 0;
     static constexpr std::int64_t primitive_tests = 0;
     RAYPOOL_INLINE void count(const auto&) {}
+    RAYPOOL_INLINE void count_boxes(const auto&, int, unsigned) {}
+    RAYPOOL_INLINE void count_primitives(int) {}
 };
 
 /// Deepest tree: 40 levels of heuristic splits and 24 of halves (bvh.cpp), each leaving width - 1 nodes behind.
@@ -59,6 +67,9 @@ struct SpreadRay {
         }
     }
 };
+
+/// Whether a primitive's box is in a tree and so limits its hits.
+enum class InBox : bool { No, Yes };
 
 namespace detail {
 
@@ -92,8 +103,6 @@ RAYPOOL_INLINE void keep_closest(const Real& t, const std::int32_t* id, unsigned
         }
     }
 }
-
-enum class InBox : bool { No, Yes };  ///< whether the primitives' boxes are in a tree and so limit their hits
 
 template <SceneNeeds needs, InBox in_box, class Real, class Block>
 requires requires(Block b) {
@@ -195,12 +204,12 @@ template <SceneNeeds needs, class Scalar, class Work>
     Hit<Scalar> hit;
     for (const auto& block : scene.large_spheres) {
         work.count(block);
-        detail::intersect_block<needs, detail::InBox::No, Real>(block, spread, hit);
+        detail::intersect_block<needs, InBox::No, Real>(block, spread, hit);
     }
     if constexpr (needs.flat) {
         for (const auto& block : scene.planes) {
             work.count(block);
-            detail::intersect_block<needs, detail::InBox::No, Real>(block, spread, hit);
+            detail::intersect_block<needs, InBox::No, Real>(block, spread, hit);
         }
         detail::walk<needs, Real>(scene.quad_tree, spread, hit, work);
     }

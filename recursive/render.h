@@ -47,7 +47,7 @@ void check_stack(std::int32_t depth, int threads) {
 
     const std::size_t per_bounce = stack_bytes_per_bounce<needs, Scalar, Work, splitting>();
     const std::size_t held = left < kStackReserve ? 0 : (left - kStackReserve) / per_bounce;
-    if (static_cast<std::size_t>(depth) < held) return;
+    if (depth == 0 || static_cast<std::size_t>(depth) < held) return;
     constexpr std::size_t kMegabyte = 1024 * 1024;
     const std::size_t wanted = ((static_cast<std::size_t>(depth) + 2) * per_bounce + 2 * kStackReserve) / kMegabyte + 1;
     throw InputError(

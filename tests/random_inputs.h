@@ -1,5 +1,6 @@
 /// Inputs for tests of numeric code: seeded, the same on every machine, and with the numbers that break arithmetic.
 ///
+/// The arguments of a call are evaluated in any order, so a test draws no two numbers in one argument list.
 /// kInputs is how many a test draws: a million in a release build, few where nothing is optimised or all is checked.
 #pragma once
 
@@ -46,6 +47,11 @@ class RandomInputs {
     Scalar unit_interval() {
         return static_cast<Scalar>(static_cast<float>(bits() >> 40U) * 0x1p-24F);
     }
+    template <class Scalar>
+    std::array<Scalar, 2> unit_square() {
+        const Scalar u = unit_interval<Scalar>();
+        return {u, unit_interval<Scalar>()};
+    }
     /// Any bit pattern: not-a-numbers, infinities and denormals too.
     template <class Scalar>
     Scalar any() {
@@ -58,7 +64,8 @@ class RandomInputs {
     /// Either sign, log-uniform in absolute value within [2^low, 2^high).
     template <class Scalar>
     Scalar magnitude(int low, int high) {
-        const double value = std::ldexp(uniform(1, 2), low + below(high - low));
+        const int exponent = low + below(high - low);
+        const double value = std::ldexp(uniform(1, 2), exponent);
         return static_cast<Scalar>(one_in(2) ? value : -value);
     }
     template <class Scalar>

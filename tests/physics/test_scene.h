@@ -1,0 +1,70 @@
+/// Scenes made in a test, a line for each thing in them, and estimates from their renders.
+#pragma once
+
+#include <cmath>
+
+#include "tests/small_render.h"
+
+namespace raypool {
+
+struct TestScene : Scene {
+    TestScene(std::int64_t image_width, std::int64_t image_height, const Vector3d& sky) {
+        width = image_width;
+        height = image_height;
+        background = {sky, sky};
+    }
+
+    void look(const Vector3d& from, const Vector3d& at, double vertical_fov_degrees) {
+        camera.look_from = from;
+        camera.look_at = at;
+        camera.up = std::abs((at - from).normalized().y()) < 0.99 ? Vector3d::UnitY() : Vector3d::UnitX();
+        camera.vertical_fov_degrees = vertical_fov_degrees;
+    }
+    std::int32_t diffuse(double albedo) { return add(Material::Kind::Diffuse, albedo); }
+    std::int32_t mirror(double albedo) { return add(Material::Kind::Metal, albedo); }
+    std::int32_t emitter(double radiance) { return add(Material::Kind::Emissive, radiance); }
+    std::int32_t glass(double ior) {
+        const std::int32_t id = add(Material::Kind::Dielectric, 0);
+        materials.back().ior = ior;
+        return id;
+    }
+    void sphere(const Vector3d& center, double radius, std::int32_t material) {
+        spheres.push_back({center, center, radius, material});
+    }
+    void plane(const Vector3d& point, const Vector3d& normal, std::int32_t material) {
+        planes.push_back({point, normal, material});
+    }
+    void quad(const Vector3d& corner, const Vector3d& edge_u, const Vector3d& edge_v, std::int32_t material) {
+        quads.push_back({corner, edge_u, edge_v, material});
+    }
+
+  private:
+    std::int32_t add(Material::Kind kind, double grey) {
+        Texture texture;
+        texture.even = Vector3d::Constant(grey);
+        textures.push_back(texture);
+        Material material;
+        material.kind = kind;
+        material.texture_id = static_cast<std::int32_t>(textures.size()) - 1;
+        materials.push_back(material);
+        return static_cast<std::int32_t>(materials.size()) - 1;
+    }
+};
+
+/// The radiance of every pixel in the first channel, in the order of the framebuffer, exactly as summed.
+inline std::vector<double> pixel_values(const Rendered& rendered) {
+    std::vector<double> values;
+    const double scale = rendered.framebuffer.fixed_point().scale() * static_cast<double>(rendered.sample_count);
+    for (std::size_t i = 0; i < rendered.framebuffer.sums().size(); i += 3)
+        values.push_back(static_cast<double>(rendered.framebuffer.sums()[i]) / scale);
+    return values;
+}
+
+/// Paths whose first segment met a surface that sends light on.
+template <class Scalar>
+std::int64_t hit_count(const Scene& scene, std::int64_t spp) {
+    const RenderReport report = render<Scalar>(scene, spp, 2).report;
+    return report.segments() - report.paths();
+}
+
+}  // namespace raypool

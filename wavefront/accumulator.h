@@ -1,0 +1,132 @@
+/// Accumulators: the ways in which deposits reach the framebuffer. To compare them is one of the project's experiments.
+///
+/// An accumulator is made once a render and adds for all threads; finish() is called once, by one thread, when all are
+/// done. Those that add integers give the same bits in any order. AtomicReal adds floating-point numbers: its image
+/// depends on the order, and so on threads and schedule.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "core/framebuffer.h"
+#include "wavefront/deposits.h"
+#include "wavefront/settings.h"
+
+namespace raypool::wavefront {
+
+template <class Scalar>
+class AccumulatorBase {
+  public:
+    AccumulatorBase() = default;
+    AccumulatorBase(const AccumulatorBase&) = delete;
+    AccumulatorBase& operator=(const AccumulatorBase&) = delete;
+    virtual ~AccumulatorBase() = default;
+    virtual void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int thread) = 0;
+    virtual void finish() {}
+    [[nodiscard]] virtual std::size_t bytes() const { return 0; }
+};
+
+/// Plain additions. Right as long as no two threads add to a pixel.
+template <class Scalar>
+class OwnedInt64 : public AccumulatorBase<Scalar> {
+  public:
+    explicit OwnedInt64(Framebuffer& framebuffer) : sums_(framebuffer.sums()) {}
+    void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) override {
+        for (std::size_t i = 0; i < deposits.count(); ++i) {
+            const FixedRgb fixed = converter.convert<Scalar>(deposits.radiance(i));
+            std::int64_t* sum = &sums_[3 * std::size_t{deposits.pixel(i)}];
+            for (int k = 0; k < 3; ++k) sum[k] += fixed[k];
+        }
+    }
+
+  private:
+    std::span<std::int64_t> sums_;
+};
+
+/// Atomic additions to the shared framebuffer.
+template <class Scalar>
+class AtomicInt64 : public AccumulatorBase<Scalar> {
+  public:
+    explicit AtomicInt64(Framebuffer& framebuffer) : sums_(framebuffer.sums()) {}
+    void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) override {
+        for (std::size_t i = 0; i < deposits.count(); ++i) {
+            const FixedRgb fixed = converter.convert<Scalar>(deposits.radiance(i));
+            std::int64_t* sum = &sums_[3 * std::size_t{deposits.pixel(i)}];
+            for (int k = 0; k < 3; ++k) std::atomic_ref(sum[k]).fetch_add(fixed[k], std::memory_order_relaxed);
+        }
+    }
+
+  private:
+    std::span<std::int64_t> sums_;
+};
+
+/// A framebuffer for each thread, merged at the end.
+template <class Scalar>
+class PrivateInt64 : public AccumulatorBase<Scalar> {
+  public:
+    PrivateInt64(Framebuffer& framebuffer, int threads) : sums_(framebuffer.sums()), parts_(threads) {
+        for (auto& part : parts_) part.resize(sums_.size());
+    }
+    void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int thread) override {
+        std::int64_t* part = parts_[static_cast<std::size_t>(thread)].data();
+        for (std::size_t i = 0; i < deposits.count(); ++i) {
+            const FixedRgb fixed = converter.convert<Scalar>(deposits.radiance(i));
+            std::int64_t* sum = part + 3 * std::size_t{deposits.pixel(i)};
+            for (int k = 0; k < 3; ++k) sum[k] += fixed[k];
+        }
+    }
+    void finish() override {
+        for (const auto& part : parts_)
+            for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += part[i];
+    }
+    [[nodiscard]] std::size_t bytes() const override { return parts_.size() * sums_.size() * sizeof(std::int64_t); }
+
+  private:
+    std::span<std::int64_t> sums_;
+    std::vector<std::vector<std::int64_t>> parts_;
+};
+
+/// Atomic additions of floating-point numbers: a compare-and-swap loop. Not reproducible.
+template <class Scalar, class Sum>
+class AtomicReal : public AccumulatorBase<Scalar> {
+  public:
+    explicit AtomicReal(Framebuffer& framebuffer) : framebuffer_(framebuffer), sums_(framebuffer.sums().size()) {}
+    void add(const Deposits<Scalar>& deposits, SampleConverter&, int) override {
+        for (std::size_t i = 0; i < deposits.count(); ++i) {
+            const Vec3<Scalar> radiance = deposits.radiance(i);
+            Sum* sum = &sums_[3 * std::size_t{deposits.pixel(i)}];
+            for (int k = 0; k < 3; ++k)
+                std::atomic_ref(sum[k]).fetch_add(static_cast<Sum>(radiance[k]), std::memory_order_relaxed);
+        }
+    }
+    void finish() override {
+        const double scale = framebuffer_.fixed_point().scale();
+        for (std::size_t i = 0; i < sums_.size(); ++i)
+            framebuffer_.sums()[i] += std::llrint(static_cast<double>(sums_[i]) * scale);
+    }
+    [[nodiscard]] std::size_t bytes() const override { return sums_.size() * sizeof(Sum); }
+
+  private:
+    Framebuffer& framebuffer_;
+    std::vector<Sum> sums_;
+};
+
+template <class Scalar>
+std::unique_ptr<AccumulatorBase<Scalar>> make_accumulator(Accumulator kind, Framebuffer& framebuffer, int threads) {
+    switch (kind) {
+        case Accumulator::OwnedInt64:
+            return std::make_unique<OwnedInt64<Scalar>>(framebuffer);
+        case Accumulator::AtomicInt64:
+            return std::make_unique<AtomicInt64<Scalar>>(framebuffer);
+        case Accumulator::PrivateInt64:
+            return std::make_unique<PrivateInt64<Scalar>>(framebuffer, threads);
+        case Accumulator::AtomicFloat:
+            return std::make_unique<AtomicReal<Scalar, float>>(framebuffer);
+        case Accumulator::AtomicDouble:
+            return std::make_unique<AtomicReal<Scalar, double>>(framebuffer);
+    }
+    return nullptr;
+}
+
+}  // namespace raypool::wavefront

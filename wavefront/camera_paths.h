@@ -1,0 +1,131 @@
+/// Which camera paths come next: the samples of a range of pixels, numbered pixel by pixel.
+///
+/// All samples of a pixel come one after the other, so a register of camera rays is as coherent as it can be, and a
+/// range of numbers is a piece of work that can be handed to any thread.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "core/loop.h"
+#include "core/path.h"
+
+namespace raypool::wavefront {
+
+/// Camera paths, a lane each; the first `count` lanes are meant, the others repeat the last.
+template <class Real>
+struct CameraLanes {
+    Real x;
+    Real y;
+    Uint32<Real> pixel;
+    Uint32<Real> sample;
+    int count;
+
+    [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_active() const {
+        return from_uint32<Real>(lane_numbers<Real>()) < Real(static_cast<ScalarOf<Real>>(count));
+    }
+};
+
+/// Paths begin .. end - 1 of the samples [first_sample, end_sample) of a range of pixels.
+class CameraPaths {
+  public:
+    CameraPaths(const PixelRange& range, std::int64_t image_width, std::int64_t first_sample, std::int64_t end_sample)
+        : range_(range), image_width_(image_width), first_sample_(first_sample), samples_(end_sample - first_sample) {
+        left_ = (range.x_end - range.x_begin) * (range.y_end - range.y_begin) * samples_;
+        seek(0);
+    }
+
+    [[nodiscard]] bool is_done() const { return left_ == 0; }
+    [[nodiscard]] std::int64_t left() const { return left_; }
+
+    /// Paths begin .. begin + count - 1 of these.
+    [[nodiscard]] CameraPaths part(std::int64_t begin, std::int64_t count) const {
+        CameraPaths part = *this;
+        part.seek(begin);
+        part.left_ = count;
+        return part;
+    }
+
+    /// Splits off the next `count` paths.
+    CameraPaths take(std::int64_t count) {
+        CameraPaths taken = *this;
+        taken.left_ = count;
+        left_ -= count;
+        advance(count);
+        return taken;
+    }
+
+    /// The next paths, at most `most` and at most a register; there must be one.
+    template <class Real>
+    RAYPOOL_INLINE CameraLanes<Real> next(std::size_t most) {
+        const auto count = static_cast<int>(std::min<std::int64_t>(left_, static_cast<std::int64_t>(most)));
+        CameraLanes<Real> lanes;
+        lanes.count = count;
+        left_ -= count;
+        if (sample_ + count <= samples_) {  // all of one pixel
+            lanes.x = Real(static_cast<ScalarOf<Real>>(x_));
+            lanes.y = Real(static_cast<ScalarOf<Real>>(y_));
+            lanes.pixel = Uint32<Real>(static_cast<std::uint32_t>(y_ * image_width_ + x_));
+            lanes.sample = Uint32<Real>(static_cast<std::uint32_t>(first_sample_ + sample_)) + lane_numbers<Real>();
+            sample_ += count;
+            if (sample_ == samples_) next_pixel();
+        } else {
+            fill(lanes, count);
+        }
+        return lanes;
+    }
+
+  private:
+    template <class Real>
+    [[gnu::noinline]] void fill(CameraLanes<Real>& lanes, int count) {
+        std::int64_t x = x_;
+        std::int64_t y = y_;
+        std::int64_t sample = sample_;
+        for (int i = 0; i < kLanes<Real>; ++i) {
+            if (i < count) {
+                x = x_, y = y_, sample = sample_;
+                if (++sample_ == samples_) next_pixel();
+            }
+            set_lane(lanes.x, i, x);
+            set_lane(lanes.y, i, y);
+            set_lane(lanes.pixel, i, y * image_width_ + x);
+            set_lane(lanes.sample, i, first_sample_ + sample);
+        }
+    }
+    template <class V>
+    static void set_lane(V& v, int i, std::int64_t value) {
+        if constexpr (Simd<V>) {
+            v[i] = static_cast<typename V::value_type>(value);
+        } else {
+            v = static_cast<V>(value);
+        }
+    }
+
+    void next_pixel() {
+        sample_ = 0;
+        if (++x_ == range_.x_end) {
+            x_ = range_.x_begin;
+            ++y_;
+        }
+    }
+    void seek(std::int64_t path) {
+        const std::int64_t pixel = path / samples_;
+        const std::int64_t width = range_.x_end - range_.x_begin;
+        sample_ = path % samples_;
+        x_ = range_.x_begin + pixel % width;
+        y_ = range_.y_begin + pixel / width;
+    }
+    void advance(std::int64_t count) {
+        const std::int64_t width = range_.x_end - range_.x_begin;
+        seek(((y_ - range_.y_begin) * width + x_ - range_.x_begin) * samples_ + sample_ + count);
+    }
+
+    PixelRange range_;
+    std::int64_t image_width_;
+    std::int64_t first_sample_;
+    std::int64_t samples_;
+    std::int64_t left_;
+    std::int64_t x_, y_, sample_;  // the next path
+};
+
+}  // namespace raypool::wavefront

@@ -1,0 +1,37 @@
+#include "wavefront/engine.h"
+
+#include "core/error.h"
+#include "wavefront/render_widths.h"
+
+namespace raypool::wavefront {
+
+namespace {
+
+template <class Scalar>
+RenderReport render_any(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const PoolSettings& pool,
+                        Framebuffer& framebuffer) {
+    if (pool.scope == PoolScope::Shared && pool.accumulator == Accumulator::OwnedInt64)
+        throw InputError(
+            "--accumulator: owned needs --pool-scope thread, since no thread owns a pixel of a shared pool");
+    if (settings.depth == 0) {  // no path has a segment
+        RenderReport report;
+        report.threads.resize(static_cast<std::size_t>(settings.threads));
+        report.threads[0].paths = scene.pixel_count() * (settings.end_sample - settings.first_sample);
+        return report;
+    }
+    return pool.width == StageWidth::Simd ? render_simd(scene, settings, pool, framebuffer)
+                                          : render_scalar(scene, settings, pool, framebuffer);
+}
+
+}  // namespace
+
+RenderReport WavefrontEngine::render(const CompiledScene<float>& scene, const RenderSettings& settings,
+                                     Framebuffer& framebuffer) const {
+    return render_any(scene, settings, pool_, framebuffer);
+}
+RenderReport WavefrontEngine::render(const CompiledScene<double>& scene, const RenderSettings& settings,
+                                     Framebuffer& framebuffer) const {
+    return render_any(scene, settings, pool_, framebuffer);
+}
+
+}  // namespace raypool::wavefront

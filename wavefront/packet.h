@@ -1,0 +1,63 @@
+/// A packet: one register of coherent rays (camera rays through neighbouring film points) walked down a tree together.
+#pragma once
+
+#include "wavefront/wide_rays.h"
+
+namespace raypool::wavefront {
+
+namespace detail {
+
+template <SceneNeeds needs, class Real, class Tree, class Work>
+RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, const Mask<Real>& is_active,
+                                Hit<Real>& hit, Work& work) {
+    if (tree.nodes.empty()) return;
+    using S = ScalarOf<Real>;
+    constexpr int kWidth = kStreamTreeWidth;
+    struct Entry {
+        S enter;  ///< of the first ray that meets it: only an order to visit in
+        std::int32_t child;
+    };
+    Entry stack[kTraversalStack<kWidth>];
+    Entry* top = stack;
+    std::int32_t child = 0;
+    for (;;) {
+        if (child >= 0) {
+            const auto& node = tree.nodes[static_cast<std::size_t>(child)];
+            Entry* const bottom = top;
+            for (int i = 0; i < kWidth; ++i) {
+                const Interval<Real> inside = child_interval<Real>(node, i, rays, hit.t);
+                const unsigned bits = mask_bits(is_active && inside.enter <= inside.exit);
+                work.count_boxes(node, i, mask_bits(is_active));
+                if (bits == 0) continue;
+                const S enter = lane(inside.enter, std::countr_zero(bits));
+                Entry* place = top++;
+                for (; place != bottom && place[-1].enter < enter; --place) *place = place[-1];
+                *place = {enter, node.child[i]};
+            }
+        } else {
+            const auto& block = tree.blocks[static_cast<std::size_t>(~child)];
+            for_each_shape(block, [&](int i) {
+                work.count_primitives(std::popcount(mask_bits(is_active)));
+                intersect_lane<needs, InBox::Yes, Real>(block, i, rays, hit);
+            });
+        }
+        if (top == stack) return;
+        child = (--top)->child;
+    }
+}
+
+}  // namespace detail
+
+/// The closest hits of camera rays, which start on nothing. Lanes that are not active get some hit or none.
+template <SceneNeeds needs, class Real, class Work>
+RAYPOOL_INLINE Hit<Real> closest_hits(const CompiledScene<ScalarOf<Real>>& scene, const Ray<Real>& ray,
+                                      const Mask<Real>& is_active, Work& work) {
+    const WideRays<Real> rays{ray, ray_inverse<Real>(ray.direction), Int<Real>(kNoPrimitive)};
+    Hit<Real> hit;
+    intersect_large<needs, Real>(scene, rays, std::popcount(mask_bits(is_active)), hit, work);
+    if constexpr (needs.flat) detail::walk_packet<needs, Real>(scene.quad_stream_tree, rays, is_active, hit, work);
+    detail::walk_packet<needs, Real>(scene.sphere_stream_tree, rays, is_active, hit, work);
+    return hit;
+}
+
+}  // namespace raypool::wavefront

@@ -1,0 +1,140 @@
+/// The ray record: what a path is between two segments, and how a pool stores many of them.
+///
+/// The fields are listed once, in for_each_field(). Size, storage, loading, storing and moving all derive from that
+/// list. Storage is structure-of-arrays: a column a field. What a scene does not need is not stored.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <new>
+
+#include "core/needs.h"
+#include "core/path.h"
+#include "core/vec.h"
+
+namespace raypool::wavefront {
+
+/// One record, or a register of them, a lane each.
+template <class Real>
+struct RayRecord {
+    Ray<Real> ray;
+    Vec3<Real> throughput;
+    PathKey<Real> key;
+    Uint32<Real> leaving_id;  ///< the primitive the ray starts on; kNoPrimitive as an unsigned number
+    Uint32<Real> step;        ///< path_step: hits so far, and the branch
+};
+
+/// The one list of fields.
+template <SceneNeeds needs, class Record, class Visit>
+RAYPOOL_INLINE void for_each_field(Record& record, Visit visit) {
+    for (int i = 0; i < 3; ++i) visit(record.ray.origin[i]);
+    for (int i = 0; i < 3; ++i) visit(record.ray.direction[i]);
+    if constexpr (needs.motion) visit(record.ray.time);
+    for (int i = 0; i < 3; ++i) visit(record.throughput[i]);
+    visit(record.key.pixel);
+    visit(record.key.sample);
+    visit(record.leaving_id);
+    visit(record.step);
+}
+
+template <SceneNeeds needs, class Scalar>
+constexpr std::size_t record_bytes() {
+    std::size_t bytes = 0;
+    RayRecord<Scalar> record{};
+    for_each_field<needs>(record, [&](const auto& field) { bytes += sizeof(field); });
+    return bytes;
+}
+
+template <class T>
+struct LaneOf {
+    using Type = T;
+};
+template <Simd V>
+struct LaneOf<V> {
+    using Type = typename V::value_type;
+};
+
+/// Room after the last record, so that a whole register can be loaded and stored anywhere.
+inline constexpr std::size_t kPadding = 16;
+
+/// Columns of `capacity` records. Not synchronised; threads may work on ranges that do not share records.
+template <SceneNeeds needs, class Scalar>
+class RayColumns {
+  public:
+    /// 0 records take no memory.
+    explicit RayColumns(std::size_t capacity)
+        : stride_(capacity + kPadding), memory_(new (std::align_val_t(64)) std::byte[bytes(capacity)]) {
+        std::memset(memory_.get(), 0, bytes(capacity));  // lanes beyond the last record hold ids that exist
+    }
+
+    static constexpr std::size_t bytes(std::size_t capacity) {
+        return record_bytes<needs, Scalar>() * (capacity + kPadding);
+    }
+
+    /// Records first, first + 1, ... by lane.
+    template <class Real>
+    RAYPOOL_INLINE RayRecord<Real> load(std::size_t first) const {
+        RayRecord<Real> record;
+        record.ray.time = Real(0);
+        const std::byte* column = memory_.get();
+        for_each_field<needs>(record, [&](auto& field) {
+            using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;
+            const T* from = reinterpret_cast<const T*>(column) + first;
+            if constexpr (Simd<Real>) {
+                field.copy_from(from, stdx::element_aligned);
+            } else {
+                field = *from;
+            }
+            column += stride_ * sizeof(T);
+        });
+        return record;
+    }
+
+    /// Stores the lanes set in `bits`, one after the other from `first`. Writes over kPadding records at most.
+    template <class Real>
+    RAYPOOL_INLINE void append(std::size_t first, const RayRecord<Real>& record, unsigned bits) {
+        std::byte* column = memory_.get();
+        for_each_field<needs>(record, [&](const auto& field) {
+            using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;
+            compress_store(reinterpret_cast<T*>(column) + first, field, bits);
+            column += stride_ * sizeof(T);
+        });
+    }
+
+    /// Copies `count` records to another place, which may be in another pool. Ranges do not overlap.
+    void copy_to(RayColumns& other, std::size_t target, std::size_t first, std::size_t count) const {
+        RayRecord<Scalar> record;
+        const std::byte* from = memory_.get();
+        std::byte* to = other.memory_.get();
+        for_each_field<needs>(record, [&](const auto& field) {
+            std::memcpy(to + target * sizeof(field), from + first * sizeof(field), count * sizeof(field));
+            from += stride_ * sizeof(field);
+            to += other.stride_ * sizeof(field);
+        });
+    }
+
+    /// Puts record order[i] of range [first, first + count) to first + i, by way of `scratch` (count * 8 bytes).
+    void permute(std::size_t first, std::size_t count, const std::uint32_t* order, std::byte* scratch) {
+        RayRecord<Scalar> record;
+        std::byte* column = memory_.get();
+        for_each_field<needs>(record, [&](const auto& field) {
+            using T = std::remove_cvref_t<decltype(field)>;
+            T* values = reinterpret_cast<T*>(column) + first;
+            T* sorted = reinterpret_cast<T*>(scratch);
+            for (std::size_t i = 0; i < count; ++i) sorted[i] = values[order[i]];
+            std::memcpy(values, sorted, count * sizeof(T));
+            column += stride_ * sizeof(T);
+        });
+    }
+
+  private:
+    struct Delete {
+        void operator()(std::byte* memory) const { ::operator delete[](memory, std::align_val_t(64)); }
+    };
+    std::size_t stride_;
+    std::unique_ptr<std::byte[], Delete> memory_;
+};
+
+}  // namespace raypool::wavefront

@@ -1,0 +1,49 @@
+/// The knobs of the pool. Each is one experiment's axis (docs/pool.md has the measurement behind every default).
+#pragma once
+
+#include <cstdint>
+
+namespace raypool::wavefront {
+
+/// Who owns a pool: one for all threads, with a barrier after every round, or one for each.
+enum class PoolScope : std::uint8_t { Shared, PerThread };
+
+/// When camera rays enter: once the pool is empty (the paper's), or as soon as there is room.
+enum class Refill : std::uint8_t { Drain, Regenerate };
+
+/// How many rays a stage treats at a time.
+enum class StageWidth : std::uint8_t { Scalar, Simd };
+
+/// How the closest hits of a batch are found: ray by ray, or as a stream.
+enum class Intersection : std::uint8_t { Single, Stream };
+
+/// How camera rays enter: written to the pool as they are, or traced and shaded in registers first, survivors only.
+enum class CameraStage : std::uint8_t { Staged, Fused };
+
+/// Order of the records before they are shaded.
+enum class Sort : std::uint8_t { None, Material };
+
+/// How survivors of a shared pool reach the next round: they stay in the batch they were in; they are moved to places
+/// taken from one atomic counter; or to places found by a prefix sum over the batches.
+enum class Append : std::uint8_t { InPlace, Atomic, PrefixSum };
+
+/// How radiance reaches the framebuffer. OwnedInt64 needs pixels that belong to one thread, so a per-thread pool;
+/// AtomicFloat and AtomicDouble round, so their image depends on the order of additions: baselines to measure.
+enum class Accumulator : std::uint8_t { OwnedInt64, AtomicInt64, PrivateInt64, AtomicFloat, AtomicDouble };
+
+struct PoolSettings {
+    PoolScope scope = PoolScope::PerThread;
+    Refill refill = Refill::Regenerate;
+    StageWidth width = StageWidth::Simd;
+    Intersection intersection = Intersection::Stream;
+    CameraStage camera = CameraStage::Fused;
+    Sort sort = Sort::None;
+    Append append = Append::InPlace;
+    Accumulator accumulator = Accumulator::OwnedInt64;
+    std::int64_t capacity = 8192;  ///< records, of each pool; >= 1
+    std::int64_t batch = 4096;     ///< records that a thread takes at a time from a shared pool
+
+    static constexpr std::int64_t kSharedCapacity = 65536;  ///< better for a shared pool, whose rounds end in barriers
+};
+
+}  // namespace raypool::wavefront

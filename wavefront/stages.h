@@ -1,0 +1,339 @@
+/// The stages of a round, for one thread and one batch of records: generate, intersect, shade, accumulate.
+///
+/// Where recursion follows one path through all of its bounces, a stage takes one bounce of many paths. A batch is a
+/// range of a pool; who cuts the pool into batches and when is the business of the round loops in rounds.h. Survivors
+/// of a batch end up at its front.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "core/engine.h"
+#include "core/loop.h"
+#include "core/shade.h"
+#include "wavefront/accumulator.h"
+#include "wavefront/camera_paths.h"
+#include "wavefront/packet.h"
+#include "wavefront/ray_record.h"
+#include "wavefront/round_log.h"
+#include "wavefront/stream.h"
+
+namespace raypool::wavefront {
+
+/// What all threads of a render share.
+template <class Scalar>
+struct RenderContext {
+    const CompiledScene<Scalar>& scene;
+    const RenderSettings& settings;
+    const PoolSettings& pool;
+    RandomSeed seed;
+    FixedPoint fixed;
+    AccumulatorBase<Scalar>& accumulator;
+};
+
+template <SceneNeeds needs, class Real, class Work, Splitting splitting>
+class Stages {
+  public:
+    using Scalar = ScalarOf<Real>;
+    using Records = RayColumns<needs, Scalar>;
+    static constexpr int kRays = kLanes<Real>;
+
+    /// For batches of at most `most_records`.
+    Stages(const RenderContext<Scalar>& context, std::size_t most_records, int thread)
+        : context_(context),
+          thread_(thread),
+          stream_(most_records, tree_depth(context)),
+          overflow_(splitting == Splitting::On ? most_records : 0),
+          sort_scratch_(context.pool.sort == Sort::None ? 0 : most_records),
+          converter_(context.fixed),
+          log_(context.settings.count_work) {
+        deposits_.reserve(std::max(most_records, kMostDeposits) + 2 * kRays);
+    }
+
+    /// The memory of one of these.
+    static std::size_t bytes(const RenderContext<Scalar>& context, std::size_t most_records) {
+        return RayStream<Scalar>::bytes(most_records, tree_depth(context)) +
+               Records::bytes(splitting == Splitting::On ? most_records : 0) +
+               (context.pool.sort == Sort::None ? 0 : most_records * sizeof(double)) +
+               Deposits<Scalar>::bytes(std::max(most_records, kMostDeposits) + 2 * kRays);
+    }
+
+    /// Brings `paths` into the pool from record `first` on, where there is room for all of them. Returns how many
+    /// records that made: one each, or, with the fused camera stage, one for each that survives its first bounce.
+    /// Records that splitting added wait in the overflow, here and in advance().
+    std::size_t generate(Records& records, std::size_t first, CameraPaths paths) {
+        log_.start();
+        paths_ += paths.left();
+        std::size_t written = 0;
+        while (!paths.is_done()) {
+            const CameraLanes<Real> lanes = paths.template next<Real>(kRays);
+            const RayRecord<Real> record = camera_record(lanes);
+            const unsigned active = (1U << lanes.count) - 1;
+            if (context_.pool.camera == CameraStage::Staged) {
+                records.template append<Real>(first + written, record, active);
+                written += static_cast<std::size_t>(lanes.count);
+                continue;
+            }
+            const Hit<Real> hit = closest_hits<needs, Real>(context_.scene, record.ray, lanes.is_active(), work_);
+            segments_ += lanes.count;
+            written += shade(records, first + written, record, hit, active);
+            if (deposits_.count() > kMostDeposits) flush();
+        }
+        flush();
+        log_.stop(Stage::Generate);
+        return written;
+    }
+
+    /// Takes records [first, first + count) through one bounce. Returns how many survive, now at the front.
+    std::size_t advance(Records& records, std::size_t first, std::size_t count) {
+        log_.start();
+        if (context_.pool.intersection == Intersection::Stream) {
+            intersect_stream(records, first, count);
+        } else {
+            intersect_single(records, first, count);
+        }
+        segments_ += static_cast<std::int64_t>(count);
+        log_.stop(Stage::Intersect);
+
+        if (context_.pool.sort == Sort::Material) {
+            sort_by_material(records, first, count);
+            log_.stop(Stage::Sort);
+        }
+
+        std::size_t survivors = 0;
+        for (std::size_t i = 0; i < count; i += kRays) {
+            const unsigned active = count - i >= kRays ? (1U << kRays) - 1 : (1U << (count - i)) - 1;
+            survivors += shade(records, first + survivors, records.template load<Real>(first + i), load_hit(i), active);
+        }
+        log_.stop(Stage::Shade);
+
+        flush();
+        log_.stop(Stage::Accumulate);
+        log_.advanced(count, survivors + overflow_count_, (count + kRays - 1) / kRays * kRays);
+        return survivors;
+    }
+
+    /// Moves the overflow to record `target`. Returns how many records that were.
+    std::size_t take_overflow(Records& records, std::size_t target) {
+        if constexpr (splitting == Splitting::On) overflow_.copy_to(records, target, 0, overflow_count_);
+        return std::exchange(overflow_count_, 0);
+    }
+
+    /// Hands records [first, first + count) of batch b and the overflow to a shared pool. Returns where in the batch's
+    /// range the next records may be put.
+    template <class Pool>
+    std::size_t pass_on(Pool& pool, std::int64_t b, std::size_t first, std::size_t count) {
+        return pool.keep(b, first, count, overflow_, std::exchange(overflow_count_, 0));
+    }
+
+    /// Waits for the other threads. Returns the seconds.
+    double wait() {
+        const double begin = omp_get_wtime();
+#pragma omp barrier
+        const double waited = omp_get_wtime() - begin;
+        log_.waited(waited);
+        return waited;
+    }
+
+    RoundLog& log() {
+        return log_;
+    }
+
+    void report(ThreadWork& work, SampleAudit& audit) const {
+        work.paths = paths_;
+        work.segments = segments_;
+        work.box_tests = work_.box_tests;
+        work.primitive_tests = work_.primitive_tests;
+        audit = converter_.audit();
+    }
+
+  private:
+    static constexpr std::size_t kMostDeposits = 1024;  ///< kept back in the fused camera stage; fits into the L1 cache
+
+    static int tree_depth(const RenderContext<Scalar>& context) {
+        return std::max(context.scene.sphere_stream_tree.depth, context.scene.quad_stream_tree.depth);
+    }
+
+    RAYPOOL_INLINE RayRecord<Real> camera_record(const CameraLanes<Real>& lanes) const {
+        RayRecord<Real> record;
+        record.ray =
+            camera_ray<needs, Real>(context_.scene.camera, lanes.x, lanes.y, lanes.pixel, lanes.sample, context_.seed);
+        record.throughput = vec3<Real>(Real(1), Real(1), Real(1));
+        record.key = {lanes.pixel, lanes.sample};
+        record.leaving_id = Uint32<Real>(static_cast<std::uint32_t>(kNoPrimitive));
+        record.step = Uint32<Real>(0U);
+        return record;
+    }
+
+    /// Ends paths that left or met an emitter, scatters the others, and appends those that go on.
+    RAYPOOL_INLINE std::size_t shade(Records& records, std::size_t target, const RayRecord<Real>& record,
+                                     const Hit<Real>& hit, unsigned active) {
+        const Mask<Real> is_hit = as_mask<Real>(hit.primitive_id >= Int<Real>(0));
+        const unsigned hits = mask_bits(is_hit) & active;
+        if (const unsigned misses = active & ~hits; misses != 0) {
+            const Vec3<Real> sky = sky_radiance<Real>(context_.scene.sky, record.ray.direction);
+            deposits_.template put<Real>(record.key.pixel, product(record.throughput, sky), misses);
+        }
+        if (hits == 0) return 0;
+
+        const Int<Real> id = select(is_hit, hit.primitive_id, Int<Real>(0));
+        const Scattered<Real> out =
+            scatter<needs, Real, splitting>(context_.scene, record.ray, hit.t, id, record.throughput, record.key,
+                                            record.step, context_.seed, context_.settings.split_depth);
+        if constexpr (needs.emissive) {
+            if (const unsigned ends = mask_bits(out.is_emitter) & hits; ends != 0)
+                deposits_.template put<Real>(record.key.pixel, out.throughput, ends);
+        }
+        const Uint32<Real> step = record.step + Uint32<Real>(1U);
+        const Mask<Real> is_deepest = from_uint32<Real>(path_step::bounce<Uint32<Real>>(step)) >=
+                                      Real(static_cast<Scalar>(context_.settings.depth));
+        const unsigned alive = mask_bits(out.is_alive && !is_deepest) & hits;
+        RayRecord<Real> next = record;
+        next.ray.origin = out.origin;
+        next.leaving_id = id_bits(id);
+        next.step = step;
+        if constexpr (splitting == Splitting::On) {
+            const Uint32<Real> reflected = path_step::reflected_branch<Uint32<Real>>(step);
+            const unsigned alive_too = mask_bits(out.is_reflected_alive && !is_deepest) & hits;
+            next.ray.direction = out.reflected_direction;
+            next.throughput = out.reflected_throughput;
+            next.step = reflected;
+            overflow_.template append<Real>(overflow_count_, next, alive_too);
+            overflow_count_ += static_cast<std::size_t>(std::popcount(alive_too));
+            next.step =
+                select_bits(mask_bits(out.is_split), reflected + Uint32<Real>(1U << path_step::kBranchShift), step);
+        }
+        if (alive == 0) return 0;
+        next.ray.direction = out.direction;
+        next.throughput = out.throughput;
+        records.template append<Real>(target, next, alive);
+        return static_cast<std::size_t>(std::popcount(alive));
+    }
+
+    static Uint32<Real> select_bits(unsigned bits, const Uint32<Real>& yes, const Uint32<Real>& no) {
+        if constexpr (Simd<Real>) {
+            return Uint32<Real>([&](auto i) { return (bits >> i & 1U) != 0 ? lane(yes, i) : lane(no, i); });
+        } else {
+            return bits != 0 ? yes : no;
+        }
+    }
+    RAYPOOL_INLINE static Vec3<Real> product(const Vec3<Real>& a, const Vec3<Real>& b) {
+        return vec3<Real>(a[0] * b[0], a[1] * b[1], a[2] * b[2]);
+    }
+    RAYPOOL_INLINE static Uint32<Real> id_bits(const Int<Real>& id) {
+        if constexpr (Simd<Real>) {
+            return stdx::static_simd_cast<Uint32<Real>>(id);
+        } else {
+            return static_cast<std::uint32_t>(id);
+        }
+    }
+
+    RAYPOOL_INLINE Hit<Real> load_hit(std::size_t i) {
+        if constexpr (Simd<Real>) {
+            using Ids = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
+            const Ids ids(stream_.primitive_id() + i, stdx::element_aligned);
+            return {Real(stream_.distance() + i, stdx::element_aligned), stdx::static_simd_cast<Int<Real>>(ids)};
+        } else {
+            return {stream_.distance()[i], stream_.primitive_id()[i]};
+        }
+    }
+
+    void intersect_single(const Records& records, std::size_t first, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const RayRecord<Scalar> record = records.template load<Scalar>(first + i);
+            const Hit<Scalar> hit =
+                closest_hit<needs>(context_.scene, record.ray, static_cast<std::int32_t>(record.leaving_id), work_);
+            stream_.distance()[i] = hit.t;
+            stream_.primitive_id()[i] = static_cast<std::int32_t>(hit.primitive_id);
+        }
+    }
+
+    void intersect_stream(const Records& records, std::size_t first, std::size_t count) {
+        if constexpr (!Simd<Real>) {
+            intersect_single(records, first, count);  // a stream of one lane is a single ray
+        } else {
+            for (std::size_t i = 0; i < count; i += kRays) {
+                const RayRecord<Real> record = records.template load<Real>(first + i);
+                using Signed = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
+                const auto leaving =
+                    stdx::static_simd_cast<Int<Real>>(stdx::static_simd_cast<Signed>(record.leaving_id));
+                const WideRays<Real> rays{record.ray, ray_inverse<Real>(record.ray.direction), leaving};
+                Hit<Real> hit;
+                intersect_large<needs, Real>(context_.scene, rays,
+                                             static_cast<int>(std::min<std::size_t>(kRays, count - i)), hit, work_);
+                store_row(i, rays, hit);
+            }
+            if constexpr (needs.flat)
+                detail::walk_stream<needs, Real>(context_.scene.quad_stream_tree, stream_, count, work_);
+            detail::walk_stream<needs, Real>(context_.scene.sphere_stream_tree, stream_, count, work_);
+        }
+    }
+
+    RAYPOOL_INLINE void store_row(std::size_t i, const WideRays<Real>& rays, const Hit<Real>& hit) requires Simd<Real> {
+        hit.t.copy_to(stream_.distance() + i, stdx::element_aligned);
+        using Ids = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
+        stdx::static_simd_cast<Ids>(hit.primitive_id).copy_to(stream_.primitive_id() + i, stdx::element_aligned);
+        Vec3<Real> scale;
+        for (int k = 0; k < 3; ++k) scale[k] = Real(1) / rays.ray.direction[k];
+        const Real column[12] = {rays.ray.origin[0],
+                                 rays.ray.origin[1],
+                                 rays.ray.origin[2],
+                                 hit.t,
+                                 scale[0],
+                                 scale[1],
+                                 scale[2],
+                                 to_real<Real>(rays.leaving_id),
+                                 rays.ray.direction[0],
+                                 rays.ray.direction[1],
+                                 rays.ray.direction[2],
+                                 rays.ray.time};
+        store_rows<12, Real>(stream_.rows()[i].value, column);
+    }
+
+    /// A counting sort by material kind (misses last) of records and hits.
+    void sort_by_material(Records& records, std::size_t first, std::size_t count) {
+        constexpr std::size_t kKinds = 5;
+        const auto kind = [&](std::size_t i) -> std::size_t {
+            const std::int32_t id = stream_.primitive_id()[i];
+            if (id < 0) return kKinds - 1;
+            const auto& row = context_.scene.surfaces[static_cast<std::size_t>(id)];
+            return static_cast<std::size_t>(row.value[SurfaceRow<Scalar>::kMaterial]);
+        };
+        std::size_t place[kKinds + 1] = {};
+        for (std::size_t i = 0; i < count; ++i) ++place[kind(i) + 1];
+        for (std::size_t k = 1; k <= kKinds; ++k) place[k] += place[k - 1];
+        std::uint32_t* order = stream_.lists();
+        for (std::size_t i = 0; i < count; ++i) order[place[kind(i)]++] = static_cast<std::uint32_t>(i);
+        auto* scratch = reinterpret_cast<std::byte*>(sort_scratch_.data());
+        records.permute(first, count, order, scratch);
+        permute(stream_.distance(), order, count, scratch);
+        permute(stream_.primitive_id(), order, count, scratch);
+    }
+
+    template <class T>
+    static void permute(T* values, const std::uint32_t* order, std::size_t count, std::byte* scratch) {
+        T* sorted = reinterpret_cast<T*>(scratch);
+        for (std::size_t i = 0; i < count; ++i) sorted[i] = values[order[i]];
+        std::copy_n(sorted, count, values);
+    }
+
+    void flush() {
+        context_.accumulator.add(deposits_, converter_, thread_);
+        deposits_.clear();
+    }
+
+    const RenderContext<Scalar>& context_;
+    int thread_;
+    RayStream<Scalar> stream_;
+    Deposits<Scalar> deposits_;
+    Records overflow_;
+    std::size_t overflow_count_ = 0;
+    std::vector<double> sort_scratch_;
+    SampleConverter converter_;
+    RoundLog log_;
+    Work work_;
+    std::int64_t paths_ = 0;
+    std::int64_t segments_ = 0;
+};
+
+}  // namespace raypool::wavefront

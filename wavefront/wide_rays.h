@@ -1,0 +1,124 @@
+/// A register of rays against one box or one shape: what packets and streams are made of.
+///
+/// The mirror image of core/traverse.h, which has one ray against a register of boxes and shapes; the same kernels of
+/// core/shapes.h, so the same bits.
+#pragma once
+
+#include "core/compiled_scene.h"
+#include "core/shapes.h"
+#include "core/traverse.h"
+
+namespace raypool::wavefront {
+
+/// A ray a lane, with what the kernels need of each.
+template <class Real>
+struct WideRays {
+    Ray<Real> ray;
+    RayInverse<Real> inverse;
+    Int<Real> leaving_id;
+};
+
+/// Takes the hits at `t` of primitive `id` that are closer than the closest so far.
+template <class Real>
+RAYPOOL_INLINE Mask<Real> closer(const Real& t, std::int32_t id, const Hit<Real>& hit) {
+    const Mask<Real> is_tie_won = t == hit.t && as_mask<Real>(Int<Real>(id) < hit.primitive_id);
+    return (t < hit.t || is_tie_won) && t < Real(kInfinity<Real>);
+}
+
+template <class Real>
+RAYPOOL_INLINE Vec3<Real> lane_of(const auto(&columns)[3], int lane) {
+    return vec3<Real>(Real(columns[0][lane]), Real(columns[1][lane]), Real(columns[2][lane]));
+}
+
+/// Tests sphere `lane` of a block. Returns the rays for which it is the closest hit now.
+template <SceneNeeds needs, InBox in_box, class Real, class Block>
+requires requires(Block b) {
+    b.radius;
+}
+RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const WideRays<Real>& rays, Hit<Real>& hit) {
+    const std::int32_t id = block.id[lane];
+    Vec3<Real> center = lane_of<Real>(block.center, lane);
+    if constexpr (needs.motion) center = center_at<Real>(center, lane_of<Real>(block.motion, lane), rays.ray.time);
+    const Mask<Real> is_leaving = as_mask<Real>(rays.leaving_id == Int<Real>(id));
+    const Real t =
+        sphere_distance<Real>(rays.ray.origin, rays.ray.direction, center, Real(block.radius[lane]), is_leaving);
+    Mask<Real> is_closer = closer<Real>(t, id, hit);
+    if (none(is_closer)) return is_closer;
+    if constexpr (in_box == InBox::Yes) {
+        const Real r(block.padded_radius[lane]);
+        const Vec3<Real> low = vec3<Real>(center[0] - r, center[1] - r, center[2] - r);
+        const Vec3<Real> high = vec3<Real>(center[0] + r, center[1] + r, center[2] + r);
+        is_closer = is_closer && is_inside_box<Real>(low, high, rays.ray.origin, rays.inverse, t);
+    }
+    hit.t = select(is_closer, t, hit.t);
+    hit.primitive_id = select(is_closer, Int<Real>(id), hit.primitive_id);
+    return is_closer;
+}
+
+/// The same for a quad, or (without a box) a plane.
+template <SceneNeeds needs, InBox in_box, class Real, class Block>
+requires requires(Block b) {
+    b.dual_u;
+}
+RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const WideRays<Real>& rays, Hit<Real>& hit) {
+    const std::int32_t id = block.id[lane];
+    const Mask<Real> is_leaving = as_mask<Real>(rays.leaving_id == Int<Real>(id));
+    const Vec3<Real> corner = lane_of<Real>(block.corner, lane);
+    const Vec3<Real> normal = lane_of<Real>(block.normal, lane);
+    const Ray<Real>& ray = rays.ray;
+    Mask<Real> is_closer;
+    Real t;
+    if constexpr (in_box == InBox::Yes) {
+        t = quad_distance<Real>(ray.origin, ray.direction, corner, normal, lane_of<Real>(block.dual_u, lane),
+                                lane_of<Real>(block.dual_v, lane), is_leaving);
+        is_closer = closer<Real>(t, id, hit);
+        if (none(is_closer)) return is_closer;
+        is_closer = is_closer && is_inside_box<Real>(lane_of<Real>(block.low, lane), lane_of<Real>(block.high, lane),
+                                                     ray.origin, rays.inverse, t);
+    } else {
+        t = plane_distance<Real>(ray.origin, ray.direction, corner, normal, is_leaving);
+        is_closer = closer<Real>(t, id, hit);
+    }
+    hit.t = select(is_closer, t, hit.t);
+    hit.primitive_id = select(is_closer, Int<Real>(id), hit.primitive_id);
+    return is_closer;
+}
+
+/// Calls visit(lane) for the lanes of a block that hold a shape.
+template <class Block, class Visit>
+RAYPOOL_INLINE void for_each_shape(const Block& block, Visit visit) {
+    for (int lane = 0; lane < Block::kLanes && block.id[lane] != kNoPrimitive; ++lane) visit(lane);
+}
+
+/// The shapes outside the trees. `count` is the number of lanes that matter, for the account of tests.
+template <SceneNeeds needs, class Real, class Work>
+RAYPOOL_INLINE void intersect_large(const CompiledScene<ScalarOf<Real>>& scene, const WideRays<Real>& rays, int count,
+                                    Hit<Real>& hit, Work& work) {
+    const auto test = [&](const auto& blocks) {
+        for (const auto& block : blocks) {
+            for_each_shape(block, [&](int lane) {
+                work.count_primitives(count);
+                intersect_lane<needs, InBox::No, Real>(block, lane, rays, hit);
+            });
+        }
+    };
+    test(scene.large_spheres);
+    if constexpr (needs.flat) test(scene.planes);
+}
+
+/// Where the rays are inside child `lane` of a node, before `limit`.
+template <class Real, class Node>
+RAYPOOL_INLINE Interval<Real> child_interval(const Node& node, int lane, const WideRays<Real>& rays,
+                                             const Real& limit) {
+    Vec3<Real> near;
+    Vec3<Real> far;
+    for (int i = 0; i < 3; ++i) {
+        const Real low(node.bounds[i][0][lane]);
+        const Real high(node.bounds[i][1][lane]);
+        near[i] = select(rays.inverse.is_negative[i], high, low);
+        far[i] = select(rays.inverse.is_negative[i], low, high);
+    }
+    return box_interval<Real>(near, far, rays.ray.origin, rays.inverse, limit);
+}
+
+}  // namespace raypool::wavefront
