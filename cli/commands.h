@@ -8,6 +8,7 @@
 namespace raypool::cli {
 
 void add_render_command(CLI::App& app, int& status);
+void add_compare_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app, int& status);
 void add_diff_command(CLI::App& app, int& status);
 

@@ -16,7 +16,7 @@ namespace {
 
 int fail(int status, std::string text) {
     for (char& c : text)
-        if (c == '\n') c = ' ';
+        if (static_cast<unsigned char>(c) < ' ' || c == 0x7F) c = ' ';  // one line, and nothing for a terminal to obey
     fmt::print(stderr, "raypool: {}\n", text);
     return status;
 }
@@ -33,15 +33,16 @@ int main(int argc, char** argv) {
         app.set_version_flag("--version", RAYPOOL_VERSION);
         int status = 0;
         raypool::cli::add_render_command(app, status);
+        raypool::cli::add_compare_command(app, status);
         raypool::cli::add_info_command(app, status);
         raypool::cli::add_diff_command(app, status);
         try {
             app.parse(argc, argv);
+            if (app.get_subcommands().empty()) return fail(2, "a command is required (see --help)");
         } catch (const CLI::ParseError& error) {
-            if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-            return fail(2, fmt::format("{} (see --help)", error.what()));
+            if (error.get_exit_code() != 0) return fail(2, fmt::format("{} (see --help)", error.what()));
+            app.exit(error);  // --help, --version
         }
-        if (app.get_subcommands().empty()) return fail(2, "a command is required (see --help)");
         if (std::fflush(stdout) != 0) return fail(1, "cannot write to the standard output");
         return status;
     } catch (const raypool::InputError& error) {

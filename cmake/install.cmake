@@ -1,12 +1,13 @@
 # `cmake --install`: the command, the libraries with their headers, and the package that find_package(raypool) finds.
 #
-# A consumer links raypool::core or raypool::recursive and includes "core/scene.h". The compiler flags come along with
-# raypool::flags, as they must: kernels are templates in headers, and an image depends on how they are compiled.
+# A consumer links raypool::core, raypool::recursive or raypool::wavefront and includes "core/scene.h". The compiler
+# flags come along with raypool::flags, as they must: kernels are templates in headers, and an image depends on how
+# they are compiled.
 
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/raypool)
-set(folders core recursive)
+set(folders core recursive wavefront)
 
 install(TARGETS raypool)
 # The static libraries name the warnings they were built with; who links them does not get those.

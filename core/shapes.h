@@ -140,7 +140,11 @@ RAYPOOL_INLINE std::array<Real, 2> plane_coordinates(const Vec3<Real>& p, const 
     return {dot<Real>(f, dual_u), dot<Real>(f, dual_v)};
 }
 
-/// Distance to the parallelogram where both coordinates are in [0, 1].
+/// How far a quad reaches beyond its edges, as a part of them: quads that share an edge leave no gap to rounding.
+template <class Scalar>
+inline constexpr Scalar kEdgeSlack = 8 * std::numeric_limits<Scalar>::epsilon();
+
+/// Distance to the parallelogram where both coordinates are in [0, 1], or beyond by kEdgeSlack.
 template <class Real>
 RAYPOOL_INLINE Real quad_distance(const Vec3<Real>& origin, const Vec3<Real>& direction, const Vec3<Real>& corner,
                                   const Vec3<Real>& normal, const Vec3<Real>& dual_u, const Vec3<Real>& dual_v,
@@ -149,7 +153,9 @@ RAYPOOL_INLINE Real quad_distance(const Vec3<Real>& origin, const Vec3<Real>& di
     const Mask<Real> is_finite = t < Real(kInfinity<Real>);
     if (none(is_finite)) return t;
     const auto [u, v] = plane_coordinates<Real>(along<Real>(origin, t, direction), corner, dual_u, dual_v);
-    const Mask<Real> is_met = is_finite && u >= Real(0) && u <= Real(1) && v >= Real(0) && v <= Real(1);
+    const Real least(-kEdgeSlack<ScalarOf<Real>>);
+    const Real most(1 + kEdgeSlack<ScalarOf<Real>>);
+    const Mask<Real> is_met = is_finite && u >= least && u <= most && v >= least && v <= most;
     return select(is_met, t, Real(kInfinity<Real>));
 }
 

@@ -48,6 +48,7 @@ class SharedPool {
     SharedPool(std::size_t capacity, std::size_t batch, int split_depth)
         : batch_count_((capacity + batch - 1) / batch),
           batch_((capacity + batch_count_ - 1) / batch_count_),
+          stride_((batch_ + kPadding - 1) / kPadding * kPadding),
           camera_capacity_(std::max<std::size_t>(capacity >> static_cast<unsigned>(split_depth), 1)),
           split_depth_(split_depth),
           records_(allocated()) {}
@@ -56,9 +57,10 @@ class SharedPool {
     virtual ~SharedPool() = default;
 
     Records& records() { return records_; }
-    [[nodiscard]] std::size_t batch() const { return batch_; }
+    /// Records that a batch can have.
+    [[nodiscard]] std::size_t batch() const { return stride_; }
     [[nodiscard]] std::int64_t batch_count() const { return static_cast<std::int64_t>(batch_count_); }
-    [[nodiscard]] std::size_t first(std::int64_t b) const { return static_cast<std::size_t>(b) * batch_; }
+    [[nodiscard]] std::size_t first(std::int64_t b) const { return static_cast<std::size_t>(b) * stride_; }
     [[nodiscard]] bool is_empty() const { return total_ == 0; }
 
     /// Records of a batch at the start of the round.
@@ -73,11 +75,12 @@ class SharedPool {
     [[nodiscard]] virtual std::size_t bytes() const { return Records::bytes(allocated()); }
 
   protected:
-    [[nodiscard]] std::size_t allocated() const { return batch_ * batch_count_ + kRoomToGenerate; }
+    [[nodiscard]] std::size_t allocated() const { return stride_ * batch_count_ + kRoomToGenerate; }
 
     static constexpr std::size_t kRoomToGenerate = 64;  ///< camera paths may be written behind a full range
     std::size_t batch_count_;
     std::size_t batch_;
+    std::size_t stride_;  ///< from batch to batch: whole registers, so that no two threads touch one
     std::size_t camera_capacity_;
     int split_depth_;
     std::size_t total_ = 0;
@@ -123,7 +126,7 @@ class DensePool : public SharedPool<needs, Scalar> {
   public:
     using SharedPool<needs, Scalar>::SharedPool;
     [[nodiscard]] std::size_t count(std::int64_t b) const override {
-        return std::min(this->batch_, this->total_ - std::min(this->total_, this->first(b)));
+        return std::min(this->stride_, this->total_ - std::min(this->total_, this->first(b)));
     }
     [[nodiscard]] std::size_t room(std::int64_t b) const override {
         const std::size_t free = this->camera_capacity_ - std::min(this->camera_capacity_, this->total_);

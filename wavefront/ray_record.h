@@ -92,15 +92,20 @@ class RayColumns {
         return record;
     }
 
-    /// Stores the lanes set in `bits`, one after the other from `first`. Writes over kPadding records at most.
+    /// Stores the lanes set in `bits`, one after the other from `first`. Writes to no record from `end` on, which may
+    /// be another thread's; what lies between the last lane stored and `end` is garbage afterwards.
     template <class Real>
-    RAYPOOL_INLINE void append(std::size_t first, const RayRecord<Real>& record, unsigned bits) {
+    RAYPOOL_INLINE void append(std::size_t first, const RayRecord<Real>& record, unsigned bits, std::size_t end) {
         std::byte* column = memory_.get();
-        for_each_field<needs>(record, [&](const auto& field) {
-            using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;
-            compress_store(reinterpret_cast<T*>(column) + first, field, bits);
-            column += stride_ * sizeof(T);
-        });
+        if (first + kLanes<Real> <= end) [[likely]] {
+            for_each_field<needs>(record, [&](const auto& field) {
+                using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;
+                compress_store(reinterpret_cast<T*>(column) + first, field, bits);
+                column += stride_ * sizeof(T);
+            });
+        } else {
+            append_by_lane(first, record, bits);
+        }
     }
 
     /// Copies `count` records to another place, which may be in another pool. Ranges do not overlap.
@@ -130,6 +135,17 @@ class RayColumns {
     }
 
   private:
+    template <class Real>
+    [[gnu::noinline]] void append_by_lane(std::size_t first, const RayRecord<Real>& record, unsigned bits) {
+        std::byte* column = memory_.get();
+        for_each_field<needs>(record, [&](const auto& field) {
+            using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;
+            T* target = reinterpret_cast<T*>(column) + first;
+            for (unsigned left = bits; left != 0; left &= left - 1) *target++ = lane(field, std::countr_zero(left));
+            column += stride_ * sizeof(T);
+        });
+    }
+
     struct Delete {
         void operator()(std::byte* memory) const { ::operator delete[](memory, std::align_val_t(64)); }
     };

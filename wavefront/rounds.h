@@ -120,7 +120,7 @@ RenderReport render_shared_pool(const RenderContext<ScalarOf<Real>>& context, Sh
                     const PathCounter::Part part = camera.take(std::min(room, kCameraChunk));
                     if (part.count == 0) break;
                     const std::size_t made = stages.generate(pool.records(), end, image.part(part.begin, part.count));
-                    room -= made;
+                    room -= std::min(room, made + stages.overflow_count());
                     end = stages.pass_on(pool, b, end, made);
                     progress.add(part.count);
                 }

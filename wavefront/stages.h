@@ -64,19 +64,20 @@ class Stages {
     std::size_t generate(Records& records, std::size_t first, CameraPaths paths) {
         log_.start();
         paths_ += paths.left();
+        const std::size_t end = first + static_cast<std::size_t>(paths.left());
         std::size_t written = 0;
         while (!paths.is_done()) {
             const CameraLanes<Real> lanes = paths.template next<Real>(kRays);
             const RayRecord<Real> record = camera_record(lanes);
             const unsigned active = (1U << lanes.count) - 1;
             if (context_.pool.camera == CameraStage::Staged) {
-                records.template append<Real>(first + written, record, active);
+                records.template append<Real>(first + written, record, active, end);
                 written += static_cast<std::size_t>(lanes.count);
                 continue;
             }
             const Hit<Real> hit = closest_hits<needs, Real>(context_.scene, record.ray, lanes.is_active(), work_);
             segments_ += lanes.count;
-            written += shade(records, first + written, record, hit, active);
+            written += shade(records, first + written, end, record, hit, active);
             if (deposits_.count() > kMostDeposits) flush();
         }
         flush();
@@ -103,7 +104,8 @@ class Stages {
         std::size_t survivors = 0;
         for (std::size_t i = 0; i < count; i += kRays) {
             const unsigned active = count - i >= kRays ? (1U << kRays) - 1 : (1U << (count - i)) - 1;
-            survivors += shade(records, first + survivors, records.template load<Real>(first + i), load_hit(i), active);
+            survivors += shade(records, first + survivors, first + count, records.template load<Real>(first + i),
+                               load_hit(i), active);
         }
         log_.stop(Stage::Shade);
 
@@ -113,6 +115,7 @@ class Stages {
         return survivors;
     }
 
+    [[nodiscard]] std::size_t overflow_count() const { return overflow_count_; }
     /// Moves the overflow to record `target`. Returns how many records that were.
     std::size_t take_overflow(Records& records, std::size_t target) {
         if constexpr (splitting == Splitting::On) overflow_.copy_to(records, target, 0, overflow_count_);
@@ -166,8 +169,8 @@ class Stages {
     }
 
     /// Ends paths that left or met an emitter, scatters the others, and appends those that go on.
-    RAYPOOL_INLINE std::size_t shade(Records& records, std::size_t target, const RayRecord<Real>& record,
-                                     const Hit<Real>& hit, unsigned active) {
+    RAYPOOL_INLINE std::size_t shade(Records& records, std::size_t target, std::size_t end,
+                                     const RayRecord<Real>& record, const Hit<Real>& hit, unsigned active) {
         const Mask<Real> is_hit = as_mask<Real>(hit.primitive_id >= Int<Real>(0));
         const unsigned hits = mask_bits(is_hit) & active;
         if (const unsigned misses = active & ~hits; misses != 0) {
@@ -198,7 +201,7 @@ class Stages {
             next.ray.direction = out.reflected_direction;
             next.throughput = out.reflected_throughput;
             next.step = reflected;
-            overflow_.template append<Real>(overflow_count_, next, alive_too);
+            overflow_.template append<Real>(overflow_count_, next, alive_too, overflow_count_ + kRays);
             overflow_count_ += static_cast<std::size_t>(std::popcount(alive_too));
             next.step =
                 select_bits(mask_bits(out.is_split), reflected + Uint32<Real>(1U << path_step::kBranchShift), step);
@@ -206,7 +209,7 @@ class Stages {
         if (alive == 0) return 0;
         next.ray.direction = out.direction;
         next.throughput = out.throughput;
-        records.template append<Real>(target, next, alive);
+        records.template append<Real>(target, next, alive, end);
         return static_cast<std::size_t>(std::popcount(alive));
     }
 

@@ -82,7 +82,7 @@ class StreamWalk {
   private:
     void visit_node(const WideNode<S, kWidth>& node, const std::uint32_t* list, std::size_t count,
                     std::uint32_t* free) {
-        const std::size_t room = count + 2 * kRays;
+        const std::size_t room = count + kRays;  // a register is stored whole behind the last index
         std::size_t filled[kWidth] = {};
         for (std::size_t first = 0; first < count; first += kRays) {
             Real row[8];

@@ -78,12 +78,13 @@ void run_scatter(const CompiledScene<Scalar>& scene, Arguments<Real> in, Results
     constexpr int kSplitDepth = splitting == Splitting::On ? 3 : 0;
     const Scattered<Real> after = scatter<needs, Real, splitting>(scene, ray, t, id, throughput, {pixel, sample}, step,
                                                                   random_seed(0), kSplitDepth);
-    out(after.origin), out(after.direction), out(after.throughput);
+    out(after.origin), out(after.throughput);
+    out(select<Real>(after.is_emitter, throughput, after.direction));  // of an ended path it means nothing
     out.mask(after.is_alive), out.mask(after.is_emitter);
     if constexpr (splitting == Splitting::On) {
         out.mask(after.is_split), out.mask(after.is_reflected_alive);
-        out(select<Real>(after.is_split, after.reflected_direction, after.direction));
-        out(select<Real>(after.is_split, after.reflected_throughput, after.throughput));
+        out(select<Real>(after.is_split, after.reflected_direction, throughput));
+        out(select<Real>(after.is_split, after.reflected_throughput, throughput));
     }
 }
 

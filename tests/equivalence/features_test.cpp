@@ -134,10 +134,11 @@ TEST(NeutralTwin, OfEveryFeatureIsTheSameImage) {
     lens.focus_distance = 1;
 
     const Rendered plain = render_with<kEverything>(compile<float>(plain_scene()));
-    for (const auto& [feature, scene] : twins) {
+    for (const auto& twin : twins) {
+        bool SceneNeeds::*feature = twin.first;
         const auto named = std::find_if(kSceneFeatures.begin(), kSceneFeatures.end(),
                                         [&](const SceneFeature& f) { return f.member == feature; });
-        const CompiledScene<float> compiled = compile<float>(scene);
+        const CompiledScene<float> compiled = compile<float>(twin.second);
         EXPECT_FALSE(compile<float>(plain_scene()).needs.*feature);
         EXPECT_TRUE(compiled.needs.*feature) << named->name;
         EXPECT_TRUE(same_image(fmt::format("twin_{}", named->name), plain, render_with<kEverything>(compiled),

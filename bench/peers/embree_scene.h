@@ -1,0 +1,88 @@
+/// A Scene in Embree 3: spheres and quads as user geometries with their own intersection functions, planes (which have
+/// no box) tested by hand before, and a table of what the surfaces are made of.
+///
+/// Called by the peer's tracers. Immutable once made, and safe to trace from several threads. A primitive's id counts
+/// spheres, quads, planes. A ray carries the id of the primitive it starts on in its `id` field; it cannot hit that
+/// flat, and of that sphere it meets the far side only, so there is no least distance to choose.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+#include "bench/peers/numbers.h"
+#include "core/scene.h"
+
+namespace raypool::peers {
+
+inline constexpr std::uint32_t kNothing = RTC_INVALID_GEOMETRY_ID;
+inline constexpr int kPacket = 16;
+
+struct SphereShape {
+    V3 center;
+    float radius;
+    V3 motion;
+    float unused;
+};
+
+/// Quads and planes. (u, v) are the offset from the corner along the dual vectors.
+struct FlatShape {
+    V3 corner, normal, dual_u, dual_v;
+};
+
+/// The columns of a primitive's row in the surface table.
+struct Surface {
+    enum Column : std::uint8_t {
+        kShape = 0,      ///< a sphere's centre, a flat's normal
+        kRadius = 3,     ///< 0 for a flat
+        kMotion = 4,     ///<
+        kMaterial = 7,   ///< Material::Kind
+        kColour = 8,     ///<
+        kParameter = 11, ///< fuzz or index of refraction
+        kTexture = 12,   ///< Texture::Kind
+        kOdd = 13,       ///< the checker's other colour
+        kOffset = 16,    ///< the checker's
+        kDensity = 19,   ///< cells a unit
+        kImage = 20,     ///< index into the scene's textures
+        kColumns = 24
+    };
+};
+
+class EmbreeScene {
+  public:
+    explicit EmbreeScene(const Scene& scene);
+
+    /// Closest hits of the rays, in place. Ids are in hit.primID, counted through all shapes, where hit.geomID is not
+    /// kNothing. The packet form skips lanes where `valid` is 0 and expects -1 in the others.
+    void intersect(RTCRayHit& ray) const;
+    void intersect(const int* valid, RTCRayHit16& rays) const;
+
+    [[nodiscard]] const float* surfaces() const { return surfaces_.data(); }
+    [[nodiscard]] const Texture& texture(int id) const { return textures_[static_cast<std::size_t>(id)]; }
+
+  private:
+    void add_surface(const Scene& scene, int material_id, V3 shape, float radius, V3 motion);
+    void attach(RTCGeometry geometry, std::size_t count);
+    void test_planes(const int* valid, RTCRayHit16& rays) const;
+
+    template <auto release>
+    struct Release {
+        template <class Handle>
+        void operator()(Handle handle) const {
+            release(handle);
+        }
+    };
+
+    std::vector<SphereShape> spheres_;
+    std::vector<FlatShape> quads_, planes_;
+    std::vector<float> surfaces_;
+    std::vector<Texture> textures_;
+    std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release<rtcReleaseDevice>> device_;
+    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>> scene_;
+};
+
+}  // namespace raypool::peers

@@ -1,0 +1,228 @@
+#include <omp.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "cli/pool_options.h"
+#include "cli/stats_json.h"
+#include "core/environment.h"
+#include "core/error.h"
+#include "core/output_file.h"
+#include "core/scene_reader.h"
+#include "recursive/engine.h"
+#include "wavefront/engine.h"
+#include "wavefront/ladder.h"
+
+namespace raypool::cli {
+
+namespace {
+
+#ifdef NDEBUG
+constexpr bool kIsDebugBuild = false;
+#else
+constexpr bool kIsDebugBuild = true;
+#endif
+
+struct CompareOptions {
+    std::string scene = "paper";
+    std::int64_t spp = 32;
+    std::int64_t width = 0;
+    std::int64_t depth = 50;
+    int split_depth = 0;
+    std::uint64_t seed = 0;
+    int threads = 0;
+    std::string schedule;
+    std::string grain = "line";
+    int repeats = 5;
+    bool only_check = false;
+    std::string json;
+};
+
+/// One row of the table.
+struct Contender {
+    std::string name;
+    std::string step;
+    std::unique_ptr<Engine> engine;
+    nlohmann::json pool;  ///< null for the recursive engines
+    std::string hash;
+    std::vector<double> rate;   ///< M paths/s, one a repeat
+    std::vector<double> ratio;  ///< to the recursive engine in the same repeat
+    RenderReport last;
+};
+
+std::vector<Contender> contenders(int threads) {
+    std::vector<Contender> list;
+    const auto add = [&](std::string name, std::string step, std::unique_ptr<Engine> engine, nlohmann::json pool) {
+        list.push_back({std::move(name), std::move(step), std::move(engine), std::move(pool), {}, {}, {}, {}});
+    };
+    add("recursive", "the paper's tracer: a bounce is a call", std::make_unique<recursive::RecursiveEngine>(), nullptr);
+    add("iterative", "a loop in place of the call", std::make_unique<recursive::IterativeEngine>(), nullptr);
+    for (const wavefront::Rung& rung : wavefront::ladder(threads))
+        add(rung.name, rung.step, std::make_unique<wavefront::WavefrontEngine>(rung.pool), to_json(rung.pool));
+    return list;
+}
+
+struct Spread {
+    double median, low, high;
+};
+Spread spread(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t n = values.size();
+    return {0.5 * (values[(n - 1) / 2] + values[n / 2]), values.front(), values.back()};
+}
+
+/// Largest over mean of the segments that threads traced: 1 is perfect balance of work.
+double load_imbalance(const RenderReport& report) {
+    std::int64_t most = 0;
+    for (const ThreadWork& thread : report.threads) most = std::max(most, thread.segments);
+    const std::int64_t all = report.segments();
+    return all == 0 ? 1
+                    : static_cast<double>(most) * static_cast<double>(report.threads.size()) / static_cast<double>(all);
+}
+
+/// Part of the threads' time that was spent waiting for other threads.
+double waiting(const RenderReport& report) {
+    double wait = 0;
+    for (const ThreadWork& thread : report.threads) wait += thread.wait_s;
+    return wait / (report.seconds * static_cast<double>(report.threads.size()));
+}
+
+std::string run_once(Contender& contender, const CompiledScene<float>& scene, const RenderSettings& settings) {
+    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, scene.max_radiance));
+    contender.last = contender.engine->render(scene, settings, framebuffer);
+    return framebuffer.hash();
+}
+
+/// Runs all once; the order is turned by `turn`, so that no contender always follows the same other.
+void run_all(std::vector<Contender>& list, std::size_t turn, const CompiledScene<float>& scene,
+             const RenderSettings& settings) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        Contender& contender = list[(i + turn) % list.size()];
+        const std::string hash = run_once(contender, scene, settings);
+        if (contender.hash.empty()) contender.hash = hash;
+        if (contender.hash != hash) contender.hash = "changes";
+        contender.rate.push_back(static_cast<double>(contender.last.paths()) / contender.last.seconds * 1e-6);
+    }
+    for (Contender& contender : list) contender.ratio.push_back(contender.rate.back() / list.front().rate.back());
+}
+
+void print_table(const std::vector<Contender>& list) {
+    fmt::print("{:<14} {:>9} {:>22} {:>9} {:>8} {:>7} {:>9}  {}\n", "engine", "M paths/s", "ratio (low to high)",
+               "load", "waiting", "bytes", "pools", "hash");
+    for (const Contender& contender : list) {
+        const Spread rate = spread(contender.rate);
+        const Spread ratio = spread(contender.ratio);
+        fmt::print("{:<14} {:>9.2f} {:>6.2f} ({:>5.2f} to {:>5.2f}) {:>9.3f} {:>6.1f} % {:>7} {:>6.2f} MB  {}\n",
+                   contender.name, rate.median, ratio.median, ratio.low, ratio.high, load_imbalance(contender.last),
+                   100 * waiting(contender.last), contender.last.record_bytes,
+                   static_cast<double>(contender.last.pool_bytes) / (1024 * 1024), contender.hash);
+    }
+}
+
+nlohmann::json table_json(const std::vector<Contender>& list) {
+    nlohmann::json rows = nlohmann::json::array();
+    for (const Contender& contender : list) {
+        const Spread ratio = spread(contender.ratio);
+        rows.push_back({{"name", contender.name},
+                        {"step", contender.step},
+                        {"hash", contender.hash},
+                        {"mpaths_per_s", contender.rate},
+                        {"ratio", contender.ratio},
+                        {"ratio_median", ratio.median},
+                        {"segments", contender.last.segments()},
+                        {"load_max_over_mean", load_imbalance(contender.last)},
+                        {"waiting", waiting(contender.last)},
+                        {"record_bytes", contender.last.record_bytes},
+                        {"pool_bytes", contender.last.pool_bytes},
+                        {"pool", contender.pool}});
+    }
+    return rows;
+}
+
+int compare(const CompareOptions& options) {
+    if (kIsDebugBuild && !options.only_check)
+        throw InputError("compare: a debug build does not time; build in Release, or add --check");
+    if (!options.json.empty()) check_writable(options.json);
+    Scene scene = load_scene(options.scene);
+    if (options.width != 0) set_width(scene, options.width);
+    const CompiledScene<float> compiled = compile<float>(scene);
+
+    RenderSettings settings;
+    settings.end_sample = options.spp;
+    settings.depth = static_cast<std::int32_t>(options.depth);
+    settings.split_depth = options.split_depth;
+    settings.seed = options.seed;
+    settings.threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
+    settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
+    settings.grain = parse_grain(options.grain);
+
+    std::vector<Contender> list = contenders(settings.threads);
+    const int repeats = options.only_check ? 1 : options.repeats;
+    for (int i = 0; i < repeats; ++i) run_all(list, static_cast<std::size_t>(i), compiled, settings);
+
+    bool is_same = true;
+    for (const Contender& contender : list)
+        is_same =
+            is_same && contender.hash == list.front().hash && contender.last.segments() == list.front().last.segments();
+    fmt::print("{}: {} x {}, {} spp, depth {}, {} thread{}, {} interleaved run{}\n", scene.name, scene.width,
+               scene.height, options.spp, settings.depth, settings.threads, settings.threads == 1 ? "" : "s", repeats,
+               repeats == 1 ? "" : "s");
+    if (options.only_check) {
+        for (const Contender& contender : list)
+            fmt::print("{:<14} {} {} segments\n", contender.name, contender.hash, contender.last.segments());
+    } else if (is_same) {
+        print_table(list);
+    } else {  // a figure of a wrong image is not worth printing
+        for (const Contender& contender : list) fmt::print("{:<14} {}\n", contender.name, contender.hash);
+    }
+    fmt::print("{}\n", is_same ? "all images are the same" : "THE IMAGES DIFFER");
+    if (!options.json.empty() && is_same) {
+        write_json(options.json, {{"scene", scene.name},
+                                  {"width", scene.width},
+                                  {"height", scene.height},
+                                  {"spp", options.spp},
+                                  {"depth", settings.depth},
+                                  {"threads", settings.threads},
+                                  {"schedule", to_string(settings.schedule)},
+                                  {"grain", to_string(settings.grain)},
+                                  {"repeats", repeats},
+                                  {"rows", table_json(list)},
+                                  {"environment", environment_json()}});
+    }
+    return is_same ? 0 : 1;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, int& status) {
+    auto options = std::make_shared<CompareOptions>();
+    CLI::App* command = app.add_subcommand("compare", "Run every engine in turn: same hash? how fast? who waited?");
+    command->add_option("scene", options->scene, "Scene file, or the name of a built-in scene (default: paper)");
+    command->add_option("--spp", options->spp, "Samples per pixel (default: 32)")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}));
+    command->add_option("--width", options->width, "Image width; the height follows (default: the scene's)")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
+    command->add_option("--depth", options->depth, "Most segments of a path (default: 50)")
+        ->check(CLI::Range(std::int64_t{0}, std::int64_t{path_step::kMostBounces}));
+    command->add_option("--split-depth", options->split_depth, "Follow both rays at so many first hits on glass")
+        ->check(CLI::Range(0, path_step::kMostSplits));
+    command->add_option("--seed", options->seed, "Seed of all random numbers (default: 0)");
+    command->add_option("--threads", options->threads, "OpenMP threads (default: OMP_NUM_THREADS)")
+        ->check(CLI::Range(1, 4096));
+    command->add_option("--schedule", options->schedule, "As for render");
+    command->add_option("--grain", options->grain, "As for render");
+    command->add_option("--repeats", options->repeats, "Interleaved runs of each engine (default: 5)")
+        ->check(CLI::Range(1, 1000));
+    command->add_flag("--check", options->only_check, "Compare images and segments only, do not time");
+    command->add_option("--json", options->json, "Write all figures to this file");
+    command->callback([options, &status] { status = compare(*options); });
+}
+
+}  // namespace raypool::cli

@@ -1,0 +1,235 @@
+"""What `render`, `info` and `diff` write and print, and the smallest and oddest renders that must work."""
+
+import json
+import os
+import pty
+import struct
+import subprocess
+
+from command import SCENE, CommandTest, changed, main
+
+
+def exr_attributes(data):
+    """The attributes of type string in the header of an EXR file."""
+    assert data[:4] == b"\x76\x2f\x31\x01"
+    attributes, at = {}, 8
+    while data[at] != 0:
+        name, kind, rest = data[at:].split(b"\0", 2)
+        size = struct.unpack("<i", rest[:4])[0]
+        if kind == b"string":
+            attributes[name.decode()] = rest[4:4 + size].decode()
+        at += len(name) + len(kind) + 2 + 4 + size
+    return attributes
+
+
+class Small(CommandTest):
+    """Renders that are easily forgotten."""
+
+    def rendered(self, scene, *arguments):
+        """Stats, width, height and pixels of a render to a PFM file."""
+        self.write("scene.json", scene)
+        stats = self.stats("-o", "out.pfm", *arguments)
+        return (stats, *self.pixels("out.pfm"))
+
+    def test_image_of_one_pixel_with_more_threads_than_pixels(self):
+        scene = changed(SCENE, "/image", {"width": 1, "height": 1})
+        for grain in ("pixel", "line", "tile:16"):
+            stats, width, height, _ = self.rendered(scene, "--threads", 7, "--grain", grain, "--spp", 5)
+            self.assertEqual((width, height, stats["paths"], len(stats["threads"])), (1, 1, 5, 7))
+
+    def test_image_keeps_its_shape_at_another_width(self):
+        for width, height in ((1, 1), (4, 3), (80, 60)):
+            _, *size, _ = self.rendered(SCENE, "--width", width, "--spp", 1)
+            self.assertEqual(size, [width, height])
+
+    def test_depth_of_zero_is_black_and_of_one_is_sky(self):
+        stats, _, _, pixels = self.rendered(SCENE, "--depth", 0, "--spp", 1)
+        self.assertEqual((stats["segments"], set(pixels)), (0, {0.0}))
+        stats, _, _, pixels = self.rendered(SCENE, "--depth", 1, "--spp", 1)
+        self.assertEqual(stats["segments"], stats["paths"])
+        colours = {tuple(pixels[i:i + 3]) for i in range(0, len(pixels), 3)}
+        self.assertEqual(colours, {(0.0, 0.0, 0.0), (0.25, 0.5, 1.0)})
+
+    def test_empty_scene_is_its_background(self):
+        empty = changed(changed(changed(SCENE, "/shapes", []), "/materials"), "/textures")
+        for precision in ("float", "double"):
+            stats, _, _, pixels = self.rendered(empty, "--spp", 3, "--precision", precision)
+            self.assertEqual(set(zip(*[iter(pixels)] * 3)), {(0.25, 0.5, 1.0)})
+            self.assertEqual(stats["segments_per_path"], 1)
+
+    def test_last_samples_of_two_billion(self):
+        stats, *_ = self.rendered(SCENE, "--spp", 2**31 - 1, "--samples", f"{2**31 - 3}:{2**31 - 1}")
+        self.assertEqual(stats["paths"], 2 * 8 * 6)
+
+    def test_depth_of_the_paper(self):
+        self.rendered(SCENE, "--depth", 125, "--threads", 2)
+
+
+class Render(CommandTest):
+    def test_prints_the_hash_and_the_name_of_the_picture(self):
+        result = self.run_well("render", "scene.json", "--spp", 2, "-o", "out.png")
+        self.assertRegex(result.stdout, r"\bhash [0-9a-f]{16}\n")
+        self.assertTrue(result.stdout.endswith("\nout.png\n"))
+        self.assertEqual((self.folder / "out.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(self.run_well("render", "scene.json", "--spp", 2, "--quiet").stdout, "")
+
+    def test_needs_neither_a_scene_nor_an_output(self):
+        result = self.run_well("render", "--width", 16, "--spp", 1)
+        self.assertTrue(result.stdout.startswith("paper: 16 x 9"))
+        self.assertEqual(list(self.listing()), ["scene.json"])
+
+    def test_leaves_only_whole_files(self):
+        self.write("out.png", "old")
+        self.run_well("render", "scene.json", "--spp", 1, "-o", "out.png", "--stats", "stats.json")
+        self.assertEqual(list(self.listing()), ["out.png", "scene.json", "stats.json"])
+
+    def test_writes_to_a_pipe_what_it_writes_to_a_file(self):
+        self.run_well("render", "scene.json", "--spp", 1, "--quiet", "-o", "out.pfm")
+        os.symlink("/dev/stdout", self.folder / "pipe.pfm")
+        with open(self.folder / "caught", "wb") as caught:
+            process = subprocess.run([self.command, "render", "scene.json", "--spp", "1", "--quiet", "-o", "pipe.pfm"],
+                                     cwd=self.folder, stdout=subprocess.PIPE, check=True)
+            caught.write(process.stdout)
+        self.assertEqual((self.folder / "caught").read_bytes(), (self.folder / "out.pfm").read_bytes())
+
+    def test_shows_progress_on_a_terminal_only(self):
+        terminal, other_end = pty.openpty()
+        process = subprocess.Popen([self.command, "render", "paper", "--width", "200", "--spp", "60", "--threads", "1"],
+                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=other_end)
+        os.close(other_end)
+        shown = b""
+        try:
+            while block := os.read(terminal, 4096):
+                shown += block
+        except OSError:  # how Linux tells that the other end is closed
+            pass
+        os.close(terminal)
+        self.assertEqual(process.wait(), 0)
+        self.assertRegex(shown.decode(), r"\r\[=* *\] +\d+ %  \d+\.\d\d M paths/s  (\d+:\d\d|-:--) left ")
+        self.assertTrue(shown.endswith(b"\r\x1b[K"), "the bar is gone at the end")
+
+    def test_has_one_hash_whatever_the_engine_and_the_loop(self):
+        hashes = {
+            self.stats("--spp", 3, "--engine", engine, "--threads", threads, "--schedule", schedule, "--grain", grain)["hash"]
+            for engine in ("recursive", "iterative", "wavefront")
+            for threads, schedule, grain in ((1, "static", "line"), (2, "dynamic,3", "pixel"), (7, "guided", "tile:4"))
+        }
+        self.assertEqual(len(hashes), 1)
+        self.assertNotIn(self.stats("--spp", 3, "--seed", 2**64 - 1)["hash"], hashes)
+        self.assertNotIn(self.stats("--spp", 3, "--precision", "double")["hash"], hashes)
+
+
+class Stats(CommandTest):
+    def assert_kinds(self, kinds, values, place=""):
+        """Every key is there and of its kind; a kind is a type, a dict of kinds, or a list of one kind."""
+        for key, kind in kinds.items():
+            self.assertIn(key, values, place)
+            value, where = values[key], f"{place}/{key}"
+            if isinstance(kind, dict):
+                self.assert_kinds(kind, value, where)
+            elif isinstance(kind, list):
+                self.assertTrue(value, where)
+                for item in value:
+                    self.assert_kinds({"item": kind[0]}, {"item": item}, where)
+            else:
+                self.assertIs(type(value), kind, where)
+
+    def test_hold_every_figure(self):
+        stats = self.stats("--spp", 4, "--threads", 2, "--grain", "pixel", "--count-work", "-o", "out.png")
+        self.assert_kinds({
+            "hash": str, "paths": int, "segments": int, "segments_per_path": float, "mpaths_per_s": float,
+            "seconds": {"read": float, "compile": float, "render": float, "write": float, "total": float},
+            "audit": {"non_finite": int, "clamped": int, "clamped_energy": float},
+            "needs": [str],
+            "settings": {"scene": str, "width": int, "height": int, "spp": int, "samples": [int], "depth": int,
+                         "seed": int, "precision": str, "engine": str, "threads": int, "schedule": str, "grain": str,
+                         "count_work": bool},
+            "environment": {"version": str, "commit": str, "compiler": str, "flags": str, "build": str, "cpu": str,
+                            "cores": int, "os": str, "openmp": {}},
+            "threads": [{"paths": int, "segments": int, "box_tests": int, "primitive_tests": int, "busy_s": float,
+                         "wait_s": float}],
+        }, stats)
+        self.assertRegex(stats["hash"], r"\A[0-9a-f]{16}\Z")
+        self.assertEqual(stats["paths"], 4 * 8 * 6)
+        self.assertEqual(len(stats["threads"]), 2)
+        for figure in ("paths", "segments"):
+            self.assertEqual(sum(thread[figure] for thread in stats["threads"]), stats[figure])
+        self.assertGreaterEqual(sum(thread["primitive_tests"] for thread in stats["threads"]), stats["segments"])
+        for thread in stats["threads"]:
+            self.assertGreaterEqual(min(thread["busy_s"], thread["wait_s"]), 0)
+            self.assertLessEqual(thread["busy_s"] + thread["wait_s"], 1.01 * stats["seconds"]["render"] + 1e-3)
+        self.assertLessEqual(sum(stats["seconds"][phase] for phase in ("read", "compile", "render", "write")),
+                             stats["seconds"]["total"])
+        self.assertIn("-ffp-contract=off", stats["environment"]["flags"])
+        self.assertNotIn("-ffast-math", stats["environment"]["flags"])
+
+    def test_hold_no_count_that_was_not_made(self):
+        for thread in self.stats("--spp", 1)["threads"]:
+            self.assertEqual((thread["box_tests"], thread["primitive_tests"]), (None, None))
+
+    def test_name_what_the_scene_needs(self):
+        self.assertEqual(self.stats("--spp", 1)["needs"], ["flat", "metal"])
+        self.write("scene.json", changed(SCENE, "/shapes/0/material", "glass"))
+        self.assertEqual(self.stats("--spp", 1)["needs"], ["flat", "metal", "dielectric"])
+
+    def test_show_that_openmps_variables_are_obeyed(self):
+        environment = {"OMP_NUM_THREADS": "3", "OMP_SCHEDULE": "guided,5"}
+        stats = self.stats("--spp", 1, environment=environment)
+        self.assertEqual(stats["settings"]["threads"], 3)
+        self.assertEqual(len(stats["threads"]), 3)
+        self.assertEqual(stats["settings"]["schedule"], "guided,5")
+        self.assertEqual(stats["environment"]["openmp"], environment)
+
+        stats = self.stats("--spp", 1, "--threads", 2, "--schedule", "static,4", environment=environment)
+        self.assertEqual((stats["settings"]["threads"], stats["settings"]["schedule"]), (2, "static,4"))
+        for said, understood in (("static", "static"), ("dynamic,2", "dynamic,2"), ("monotonic:dynamic,6", "dynamic,6")):
+            self.assertEqual(self.stats("--spp", 1, environment={"OMP_SCHEDULE": said})["settings"]["schedule"],
+                             understood)
+        self.assertEqual(self.stats("--spp", 1)["settings"]["schedule"], "dynamic")
+
+    def test_are_in_the_header_of_an_exr_file(self):
+        stats = self.stats("--spp", 2, "--seed", 2**64 - 1, "--grain", "tile:4", "-o", "out.exr")
+        attributes = exr_attributes((self.folder / "out.exr").read_bytes())
+        self.assertEqual(attributes["raypool.hash"], stats["hash"])
+        for key, value in stats["settings"].items():
+            text = value if isinstance(value, str) else json.dumps(value, separators=(",", ":"))
+            self.assertEqual(attributes["raypool." + key], text)
+
+
+class Diff(CommandTest):
+    def test_ends_with_zero_for_the_same_bits_and_with_one_for_others(self):
+        for kind in ("exr", "pfm", "png"):
+            for name, seed in (("a", 0), ("again", 0), ("b", 1)):
+                self.run_well("render", "scene.json", "--spp", 1, "--seed", seed, "-o", f"{name}.{kind}")
+            same = self.run_well("diff", f"a.{kind}", f"again.{kind}")
+            self.assertRegex(same.stdout, r"pixels that differ 0 of 48\nRMSE +0\n")
+            other = self.run_command("diff", f"a.{kind}", f"b.{kind}", "-o", "where.png")
+            self.assertEqual((other.returncode, other.stderr), (1, ""))
+            self.assertRegex(other.stdout, r"pixels that differ [1-9]\d* of 48\n")
+            self.assertTrue(other.stdout.endswith("\nwhere.png\n"))
+        self.run_well("diff", "a.exr", "a.pfm")
+
+    def test_ends_with_two_for_what_cannot_be_compared(self):
+        self.run_well("render", "scene.json", "--spp", 1, "-o", "a.pfm")
+        self.run_well("render", "scene.json", "--spp", 1, "--width", 4, "-o", "small.pfm")
+        self.write("broken.pfm", (self.folder / "a.pfm").read_bytes()[:-1])
+        self.write("broken.exr", "no image")
+        self.assert_refused("diff", "a.pfm", "absent.pfm", named="absent.pfm")
+        self.assert_refused("diff", "broken.pfm", "a.pfm", named="broken.pfm")
+        self.assert_refused("diff", "a.pfm", "broken.exr", named="broken.exr")
+        self.assert_refused("diff", "a.pfm", "scene.json", named="scene.json")
+        self.assert_refused("diff", "a.pfm", "small.pfm", "-o", "where.png", named=["8 x 6", "4 x 3"])
+        self.assert_refused("diff", "a.pfm", "a.pfm", "-o", "absent/where.png", named="absent/where.png")
+
+
+class Info(CommandTest):
+    def test_prints_needs_bytes_and_trees(self):
+        text = self.run_well("info").stdout
+        self.assertIn("needs: motion, defocus, metal, fuzz, dielectric, checker\n", text)
+        self.assertRegex(text, r"\bray record: \d+ bytes in float, \d+ in double\n")
+        self.assertRegex(text, r"\bsphere tree: \d+ nodes \d+ wide, \d+ levels, \d+ leaves holding \d+ ")
+        self.assertRegex(self.run_well("info", "scene.json").stdout, r"1 spheres, 1 quads, 1 planes")
+
+
+if __name__ == "__main__":
+    main()
