@@ -1,6 +1,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,6 +20,10 @@
 #include "recursive/engine.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
+
+#ifdef RAYPOOL_HAS_EMBREE
+#include "bench/peers/embree_path_tracer.h"
+#endif
 
 namespace raypool::cli {
 
@@ -49,23 +54,54 @@ struct CompareOptions {
 struct Contender {
     std::string name;
     std::string step;
-    std::unique_ptr<Engine> engine;
-    nlohmann::json pool;  ///< null for the recursive engines
+    std::function<RenderReport(Framebuffer&)> render;
+    bool is_peer;         ///< makes an image of its own, which no hash can be asked of
+    nlohmann::json pool;  ///< null where there is none
     std::string hash;
     std::vector<double> rate;   ///< M paths/s, one a repeat
     std::vector<double> ratio;  ///< to the recursive engine in the same repeat
     RenderReport last;
 };
 
-std::vector<Contender> contenders(int threads) {
+/// The engines, and the peers that this build knows of.
+std::vector<Contender> contenders(const Scene& scene, const CompiledScene<float>& compiled,
+                                  const RenderSettings& settings, bool with_peers) {
     std::vector<Contender> list;
-    const auto add = [&](std::string name, std::string step, std::unique_ptr<Engine> engine, nlohmann::json pool) {
-        list.push_back({std::move(name), std::move(step), std::move(engine), std::move(pool), {}, {}, {}, {}});
+    const auto add = [&](std::string name, std::string step, const std::shared_ptr<Engine>& engine,
+                         nlohmann::json pool) {
+        const auto render = [engine, &compiled, &settings](Framebuffer& framebuffer) {
+            return engine->render(compiled, settings, framebuffer);
+        };
+        list.push_back({std::move(name), std::move(step), render, false, std::move(pool), {}, {}, {}, {}});
     };
-    add("recursive", "the paper's tracer: a bounce is a call", std::make_unique<recursive::RecursiveEngine>(), nullptr);
-    add("iterative", "a loop in place of the call", std::make_unique<recursive::IterativeEngine>(), nullptr);
-    for (const wavefront::Rung& rung : wavefront::ladder(threads))
-        add(rung.name, rung.step, std::make_unique<wavefront::WavefrontEngine>(rung.pool), to_json(rung.pool));
+    add("recursive", "the paper's tracer: a bounce is a call", std::make_shared<recursive::RecursiveEngine>(), nullptr);
+    add("iterative", "a loop in place of the call", std::make_shared<recursive::IterativeEngine>(), nullptr);
+    for (const wavefront::Rung& rung : wavefront::ladder(settings.threads))
+        add(rung.name, rung.step, std::make_shared<wavefront::WavefrontEngine>(rung.pool), to_json(rung.pool));
+
+#ifdef RAYPOOL_HAS_EMBREE
+    using peers::PeerMode;
+    const auto add_peer = [&](const char* name, PeerMode mode) {
+        const auto render = [&scene, &settings, mode](Framebuffer&) {
+            Image image;
+            const peers::PeerReport peer = peers::render_embree(
+                scene, {settings.end_sample, settings.depth, settings.seed, settings.threads, mode}, image);
+            RenderReport report;
+            report.seconds = peer.seconds;
+            report.threads.resize(1);
+            report.threads[0].paths = peer.paths;
+            report.threads[0].segments = peer.segments;
+            return report;
+        };
+        list.push_back({name, "a path tracer over Embree 3, not ours", render, true, nullptr, {}, {}, {}, {}});
+    };
+    if (with_peers) {
+        add_peer("embree-1", PeerMode::Single);
+        add_peer("embree-16", PeerMode::Packet16);
+    }
+#else
+    (void)scene, (void)with_peers;
+#endif
     return list;
 }
 
@@ -96,8 +132,8 @@ double waiting(const RenderReport& report) {
 
 std::string run_once(Contender& contender, const CompiledScene<float>& scene, const RenderSettings& settings) {
     Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, scene.max_radiance));
-    contender.last = contender.engine->render(scene, settings, framebuffer);
-    return framebuffer.hash();
+    contender.last = contender.render(framebuffer);
+    return contender.is_peer ? "its own" : framebuffer.hash();
 }
 
 /// Runs all once; the order is turned by `turn`, so that no contender always follows the same other.
@@ -163,7 +199,8 @@ int compare(const CompareOptions& options) {
     settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
     settings.grain = parse_grain(options.grain);
 
-    std::vector<Contender> list = contenders(settings.threads);
+    const bool with_peers = !options.only_check && settings.split_depth == 0;  // which have no split
+    std::vector<Contender> list = contenders(scene, compiled, settings, with_peers);
     const int repeats = options.only_check ? 1 : options.repeats;
     for (int i = 0; i < repeats; ++i) run_all(list, static_cast<std::size_t>(i), compiled, settings);
 

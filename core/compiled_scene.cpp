@@ -16,14 +16,9 @@ namespace {
 /// A sphere is tested up front when its box is more than this part of the box of all smaller ones.
 constexpr double kLargeArea = 0.01;
 
-template <class Scalar>
-Eigen::Vector3d rounded(const Vector3d& v) {
-    return v.cast<Scalar>().template cast<double>();
-}
-
 /// Half the edge of a sphere's box: the radius, and room for the rounding of centre + radius and of distances.
 template <class Scalar>
-double padded_radius(const Sphere& sphere) {
+Scalar padded_radius(const Sphere& sphere) {
     const double reach = std::max(sphere.center0.cwiseAbs().maxCoeff(), sphere.center1.cwiseAbs().maxCoeff());
     const double epsilon = std::numeric_limits<Scalar>::epsilon();
     return static_cast<Scalar>(sphere.radius * (1 + 8 * epsilon) + 4 * epsilon * (reach + sphere.radius));
@@ -44,7 +39,7 @@ Box widened(const Box& box) {
 /// The box over all times, exact in Scalar. It holds every box that a kernel makes of center_at(time) -+ padded radius.
 template <class Scalar>
 Box sphere_box(const Sphere& sphere) {
-    const Scalar r = static_cast<Scalar>(padded_radius<Scalar>(sphere));
+    const Scalar r = padded_radius<Scalar>(sphere);
     Box box;
     for (const double time : {0.0, 1.0}) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -284,7 +279,7 @@ class Compiler {
                 block.motion[i][lane] = row.value[Row::kMotion + i];
             }
             block.radius[lane] = row.value[Row::kRadius];
-            block.padded_radius[lane] = static_cast<Scalar>(padded_radius<Scalar>(scene_.spheres[ids[lane]]));
+            block.padded_radius[lane] = padded_radius<Scalar>(scene_.spheres[ids[lane]]);
             block.id[lane] = static_cast<std::int32_t>(ids[lane]);
         }
         return block;

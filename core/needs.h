@@ -65,9 +65,8 @@ std::vector<std::string> feature_names(const SceneNeeds& needs);
 inline constexpr SceneNeeds kEverything{true, true, true, true, true, true, true, true, true};
 
 /// The sets of features that the engines are compiled for, smallest first. A scene runs on the first that covers it.
-inline constexpr std::array<SceneNeeds, 4> kCompiledNeeds{{
+inline constexpr std::array<SceneNeeds, 3> kCompiledNeeds{{
     {},
-    {.defocus = true, .metal = true, .fuzz = true, .dielectric = true, .checker = true},
     {.motion = true, .defocus = true, .metal = true, .fuzz = true, .dielectric = true, .checker = true},
     kEverything,
 }};

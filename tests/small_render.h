@@ -56,10 +56,11 @@ Rendered render(const Engine& engine, const CompiledScene<Scalar>& scene, const 
 
 /// By the iterative engine, in one thread.
 template <class Scalar>
-Rendered render(const Scene& scene, std::int64_t spp, std::int32_t depth) {
+Rendered render(const Scene& scene, std::int64_t spp, std::int32_t depth, int split_depth = 0) {
     RenderSettings settings;
     settings.end_sample = spp;
     settings.depth = depth;
+    settings.split_depth = split_depth;
     return render(recursive::IterativeEngine(), compile<Scalar>(scene), settings);
 }
 

@@ -44,11 +44,11 @@ class SharedPool {
   public:
     using Records = RayColumns<needs, Scalar>;
 
-    /// `capacity` records in batches of about `batch`; `split_depth` as in rounds.h, camera_capacity().
+    /// `capacity` records in batches of about `batch`, each with room for all branches of a path: capacity is at least
+    /// 2^split_depth.
     SharedPool(std::size_t capacity, std::size_t batch, int split_depth)
-        : batch_count_((capacity + batch - 1) / batch),
-          batch_((capacity + batch_count_ - 1) / batch_count_),
-          stride_((batch_ + kPadding - 1) / kPadding * kPadding),
+        : batch_count_(std::min((capacity + batch - 1) / batch, capacity >> static_cast<unsigned>(split_depth))),
+          stride_(((capacity + batch_count_ - 1) / batch_count_ + kPadding - 1) / kPadding * kPadding),
           camera_capacity_(std::max<std::size_t>(capacity >> static_cast<unsigned>(split_depth), 1)),
           split_depth_(split_depth),
           records_(allocated()) {}
@@ -79,7 +79,6 @@ class SharedPool {
 
     static constexpr std::size_t kRoomToGenerate = 64;  ///< camera paths may be written behind a full range
     std::size_t batch_count_;
-    std::size_t batch_;
     std::size_t stride_;  ///< from batch to batch: whole registers, so that no two threads touch one
     std::size_t camera_capacity_;
     int split_depth_;
@@ -94,11 +93,13 @@ class InPlacePool : public SharedPool<needs, Scalar> {
 
   public:
     InPlacePool(std::size_t capacity, std::size_t batch, int split_depth)
-        : Base(capacity, batch, split_depth), counts_(this->batch_count_) {}
+        : Base(capacity, batch, split_depth), capacity_(capacity), counts_(this->batch_count_) {}
 
     [[nodiscard]] std::size_t count(std::int64_t b) const override { return counts_[static_cast<std::size_t>(b)]; }
     [[nodiscard]] std::size_t room(std::int64_t b) const override {
-        const std::size_t most = std::max<std::size_t>(this->batch_ >> static_cast<unsigned>(this->split_depth_), 1);
+        const bool has_one_more = static_cast<std::size_t>(b) < capacity_ % this->batch_count_;
+        const std::size_t share = capacity_ / this->batch_count_ + (has_one_more ? 1 : 0);
+        const std::size_t most = share >> static_cast<unsigned>(this->split_depth_);
         return most - std::min(most, count(b));
     }
     std::size_t keep(std::int64_t b, std::size_t from, std::size_t front, const typename Base::Records& overflow,
@@ -117,6 +118,7 @@ class InPlacePool : public SharedPool<needs, Scalar> {
     }
 
   private:
+    std::size_t capacity_;
     std::vector<std::size_t> counts_;
 };
 

@@ -12,7 +12,7 @@
 
 namespace raypool::wavefront {
 
-/// Camera paths, a lane each; the first `count` lanes are meant, the others repeat the last.
+/// Camera paths, a lane each; the first `count` lanes are meant, the others hold anything that is no harm to trace.
 template <class Real>
 struct CameraLanes {
     Real x;
@@ -58,7 +58,8 @@ class CameraPaths {
     /// The next paths, at most `most` and at most a register; there must be one.
     template <class Real>
     RAYPOOL_INLINE CameraLanes<Real> next(std::size_t most) {
-        const auto count = static_cast<int>(std::min<std::int64_t>(left_, static_cast<std::int64_t>(most)));
+        const auto count =
+            static_cast<int>(std::min({left_, static_cast<std::int64_t>(most), std::int64_t{kLanes<Real>}}));
         CameraLanes<Real> lanes;
         lanes.count = count;
         left_ -= count;

@@ -13,10 +13,12 @@ RenderReport render_any(const CompiledScene<Scalar>& scene, const RenderSettings
     if (pool.scope == PoolScope::Shared && pool.accumulator == Accumulator::OwnedInt64)
         throw InputError(
             "--accumulator: owned needs --pool-scope thread, since no thread owns a pixel of a shared pool");
-    if (settings.depth == 0) {  // no path has a segment
+    const std::int64_t paths = scene.pixel_count() * (settings.end_sample - settings.first_sample);
+    if (settings.depth == 0 || paths == 0) {  // no path has a segment
         RenderReport report;
         report.threads.resize(static_cast<std::size_t>(settings.threads));
-        report.threads[0].paths = scene.pixel_count() * (settings.end_sample - settings.first_sample);
+        report.threads[0].paths = paths;
+        if (settings.progress != nullptr) settings.progress->paths += paths;
         return report;
     }
     return pool.width == StageWidth::Simd ? render_simd(scene, settings, pool, framebuffer)

@@ -129,8 +129,8 @@ RenderReport render_shared_pool(const RenderContext<ScalarOf<Real>>& context, Sh
             pool.end_round();
             waiting += stages.wait();
             is_done = pool.is_empty() && camera.is_done();
-            stages.log().end_round();
             waiting += stages.wait();
+            stages.log().end_round();
         }
         stages.report(work, audit);
         work.wait_s = waiting;

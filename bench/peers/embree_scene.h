@@ -9,7 +9,6 @@
 #include <embree3/rtcore.h>
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -19,35 +18,44 @@
 
 namespace raypool::peers {
 
+using PacketRay = std::conditional_t<kPacket == 16, RTCRay16, RTCRay8>;
+using PacketRayHit = std::conditional_t<kPacket == 16, RTCRayHit16, RTCRayHit8>;
+
 inline constexpr std::uint32_t kNothing = RTC_INVALID_GEOMETRY_ID;
-inline constexpr int kPacket = 16;
 
 struct SphereShape {
-    V3 center;
+    V3<float> center;
     float radius;
-    V3 motion;
-    float unused;
+    V3<float> motion;
 };
 
-/// Quads and planes. (u, v) are the offset from the corner along the dual vectors.
+/// A quad or a plane. (u, v) are the offset from the corner along the dual vectors.
 struct FlatShape {
-    V3 corner, normal, dual_u, dual_v;
+    V3<float> corner, normal, dual_u, dual_v;
+};
+
+/// What Embree is given as the user pointer of a geometry.
+template <class Shape>
+struct ShapeTable {
+    std::vector<Shape> shapes;
+    std::vector<RTCBounds> bounds;
+    std::uint32_t first_id = 0;
 };
 
 /// The columns of a primitive's row in the surface table.
 struct Surface {
     enum Column : std::uint8_t {
-        kShape = 0,      ///< a sphere's centre, a flat's normal
-        kRadius = 3,     ///< 0 for a flat
-        kMotion = 4,     ///<
-        kMaterial = 7,   ///< Material::Kind
-        kColour = 8,     ///<
-        kParameter = 11, ///< fuzz or index of refraction
-        kTexture = 12,   ///< Texture::Kind
-        kOdd = 13,       ///< the checker's other colour
-        kOffset = 16,    ///< the checker's
-        kDensity = 19,   ///< cells a unit
-        kImage = 20,     ///< index into the scene's textures
+        kShape = 0,       ///< a sphere's centre, a flat's normal
+        kRadius = 3,      ///< 0 for a flat
+        kMotion = 4,      ///<
+        kMaterial = 7,    ///< Material::Kind
+        kColour = 8,      ///<
+        kParameter = 11,  ///< fuzz or index of refraction
+        kTexture = 12,    ///< Texture::Kind
+        kOdd = 13,        ///< the checker's other colour
+        kOffset = 16,     ///< the checker's
+        kDensity = 19,    ///< cells a unit
+        kImage = 20,      ///< index into the scene's textures
         kColumns = 24
     };
 };
@@ -55,19 +63,25 @@ struct Surface {
 class EmbreeScene {
   public:
     explicit EmbreeScene(const Scene& scene);
+    EmbreeScene(const EmbreeScene&) = delete;  // Embree points into it
+    EmbreeScene& operator=(const EmbreeScene&) = delete;
+    ~EmbreeScene() = default;
 
     /// Closest hits of the rays, in place. Ids are in hit.primID, counted through all shapes, where hit.geomID is not
-    /// kNothing. The packet form skips lanes where `valid` is 0 and expects -1 in the others.
+    /// kNothing. In a packet, is_active is -1 or 0 a lane.
     void intersect(RTCRayHit& ray) const;
-    void intersect(const int* valid, RTCRayHit16& rays) const;
+    void intersect(const WideInt& is_active, PacketRayHit& rays) const;
 
     [[nodiscard]] const float* surfaces() const { return surfaces_.data(); }
     [[nodiscard]] const Texture& texture(int id) const { return textures_[static_cast<std::size_t>(id)]; }
 
   private:
-    void add_surface(const Scene& scene, int material_id, V3 shape, float radius, V3 motion);
-    void attach(RTCGeometry geometry, std::size_t count);
-    void test_planes(const int* valid, RTCRayHit16& rays) const;
+    void add_surface(const Scene& scene, int material_id, V3<float> shape, float radius, V3<float> motion);
+    template <class Shape>
+    void attach(ShapeTable<Shape>& table, RTCIntersectFunctionN intersect);
+
+    template <class RayHit, class Mask>
+    void test_planes(Mask is_active, RayHit& rayhit) const;
 
     template <auto release>
     struct Release {
@@ -77,8 +91,9 @@ class EmbreeScene {
         }
     };
 
-    std::vector<SphereShape> spheres_;
-    std::vector<FlatShape> quads_, planes_;
+    ShapeTable<SphereShape> spheres_;
+    ShapeTable<FlatShape> quads_;
+    ShapeTable<FlatShape> planes_;  ///< not Embree's: bounds stay empty
     std::vector<float> surfaces_;
     std::vector<Texture> textures_;
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release<rtcReleaseDevice>> device_;

@@ -121,6 +121,60 @@ TEST(RealOperations, MasksTellTheBitOfEachLane) {
     expect_masks_tell_their_bits<stdx::native_simd<double>>();
 }
 
+/// Every pattern of lanes, and both the numbers and the words that travel beside them.
+template <class V, class T>
+void expect_chosen_lanes_at_the_front(int lanes) {
+    T all[16];
+    for (int i = 0; i < lanes; ++i) all[i] = static_cast<T>(100 + i);
+    const V v(all, stdx::element_aligned);
+    for (unsigned pattern = 0; pattern < 1U << static_cast<unsigned>(lanes); ++pattern) {
+        T target[32] = {};  // room for a whole vector behind the last one
+        compress_store(target, v, pattern);
+        const T* next = target;
+        for (int i = 0; i < lanes; ++i) {
+            if ((pattern >> static_cast<unsigned>(i) & 1U) == 0) continue;
+            ASSERT_EQ(*next++, all[i]) << pattern;
+        }
+    }
+}
+template <class Real>
+void expect_compress_store_works() {
+    expect_chosen_lanes_at_the_front<Real, ScalarOf<Real>>(kLanes<Real>);
+    expect_chosen_lanes_at_the_front<Uint32<Real>, std::uint32_t>(kLanes<Real>);
+}
+
+TEST(RealOperations, CompressTheChosenLanesToTheFront) {
+    expect_compress_store_works<stdx::native_simd<float>>();
+    expect_compress_store_works<Wide<float, 8>>();
+    expect_compress_store_works<stdx::native_simd<double>>();
+    float target = 1;
+    compress_store(&target, 2.0F, 0);
+    EXPECT_EQ(target, 1);
+    compress_store(&target, 2.0F, 1);
+    EXPECT_EQ(target, 2);
+}
+
+template <class Real>
+void expect_rows_stored_and_loaded_back() {
+    constexpr int kColumns = 8;
+    alignas(64) ScalarOf<Real> rows[kLanes<Real> * kColumns];
+    Real column[kColumns];
+    for (int k = 0; k < kColumns; ++k)
+        column[k] = Real([k](auto i) { return static_cast<ScalarOf<Real>>(10 * int{i} + k); });
+    store_rows<kColumns, Real>(rows, column);
+    for (int i = 0; i < kLanes<Real>; ++i)
+        for (int k = 0; k < kColumns; ++k) ASSERT_EQ(rows[i * kColumns + k], 10 * i + k);
+    Real loaded[kColumns];
+    load_rows<kColumns, Real>(rows, kColumns, Int<Real>([](auto i) { return int{i}; }), loaded);
+    for (int k = 0; k < kColumns; ++k) ASSERT_TRUE(all(loaded[k] == column[k]));
+}
+
+TEST(RealOperations, StoreRowsThatLoadRowsLoads) {
+    expect_rows_stored_and_loaded_back<stdx::native_simd<float>>();
+    expect_rows_stored_and_loaded_back<Wide<float, 8>>();
+    expect_rows_stored_and_loaded_back<stdx::native_simd<double>>();
+}
+
 TEST(FlushDenormals, HoldsForItsScopeOnly) {
     volatile float tiny = std::numeric_limits<float>::min();
     {

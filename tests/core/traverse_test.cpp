@@ -16,7 +16,7 @@
 namespace raypool::test {
 namespace {
 
-constexpr int kRays = kInputs / 50;
+constexpr int kRays = kInputs / 25;
 
 Scene empty_scene() {
     Scene scene;

@@ -11,7 +11,7 @@
 namespace raypool {
 
 /// More comparisons than this folder makes. Each may then be off by four standard errors.
-inline constexpr int kComparisonCount = 160;
+inline constexpr int kComparisonCount = 250;
 
 inline testing::AssertionResult estimate_agrees(double estimate, double standard_error, double expected) {
     const double off = (estimate - expected) / standard_error;

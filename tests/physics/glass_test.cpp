@@ -40,8 +40,9 @@ using Precisions = testing::Types<float, double>;
 TYPED_TEST_SUITE(Glass, Precisions);
 
 /// A glass sphere under a white sky, seen from far. A path of D segments is home if it reflects at once, or comes out
-/// after fewer than D - 2 reflections within; inside a sphere every one has the same angle, and so the same chance.
-TYPED_TEST(Glass, SphereReflectsAndRefractsAsFresnelSays) {
+/// after fewer than D - 2 reflections within; inside a sphere every one has the same angle, and so the same chance. A
+/// path that splits gives each branch that chance as its weight.
+TYPED_TEST(Glass, SphereReflectsAndRefractsAsFresnelSaysSplitOrNot) {
     for (const double ior : {1.5, 2.4, 1 / 1.5}) {
         TestScene scene(256, 256, Vector3d::Ones());
         scene.sphere({0, 0, 0}, 1, scene.glass(ior));
@@ -57,11 +58,13 @@ TYPED_TEST(Glass, SphereReflectsAndRefractsAsFresnelSays) {
                 for (int inside = 1; inside <= depth - 2; ++inside) home += (1 - r) * (1 - r) * std::pow(r, inside - 1);
                 return home;
             });
-            const Rendered rendered = render<TypeParam>(scene, kSpp, depth);
-            const auto home_from_sphere =
-                rendered.mean(0) * static_cast<double>(paths) - static_cast<double>(paths - hits);
-            EXPECT_TRUE(share_agrees(home_from_sphere, static_cast<double>(hits), expected))
-                << "ior " << ior << ", depth " << depth;
+            for (const int split_depth : {0, 1, 3}) {
+                const Rendered rendered = render<TypeParam>(scene, kSpp, depth, split_depth);
+                const auto home_from_sphere =
+                    rendered.mean(0) * static_cast<double>(paths) - static_cast<double>(paths - hits);
+                EXPECT_TRUE(share_agrees(home_from_sphere, static_cast<double>(hits), expected))
+                    << "ior " << ior << ", depth " << depth << ", split depth " << split_depth;
+            }
         }
     }
 }

@@ -1,0 +1,121 @@
+// Structure-of-arrays against array-of-structures for ray records: what the shade stage does to memory, and nothing
+// else. Every record of a pool is loaded, its throughput is changed, and three in four go on to the front of the pool.
+
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "bench/bench_support.h"
+#include "wavefront/ray_record.h"
+
+namespace raypool {
+namespace {
+
+using namespace wavefront;
+using Real = Wide<float, stdx::native_simd<float>::size()>;
+constexpr SceneNeeds kPaper = kCompiledNeeds[1];
+constexpr int kRays = kLanes<Real>;
+
+/// The twin of RayColumns: the same fields, a record after the other.
+class RayRows {
+  public:
+    explicit RayRows(std::size_t capacity) : memory_((capacity + kPadding) * record_bytes<kPaper, float>()) {}
+
+    template <class R>
+    RayRecord<R> load(std::size_t first) const {
+        RayRecord<R> record;
+        std::size_t offset = 0;
+        for_each_field<kPaper>(record, [&](auto& field) {
+            using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;
+            const std::byte* from = memory_.data() + first * record_bytes<kPaper, float>() + offset;
+            field = std::remove_cvref_t<decltype(field)>([&](auto i) {
+                T value;
+                std::memcpy(&value, from + i * record_bytes<kPaper, float>(), sizeof(T));
+                return value;
+            });
+            offset += sizeof(T);
+        });
+        return record;
+    }
+    template <class R>
+    void append(std::size_t first, const RayRecord<R>& record, unsigned bits, std::size_t) {
+        for (; bits != 0; bits &= bits - 1) {
+            std::byte* to = memory_.data() + first++ * record_bytes<kPaper, float>();
+            for_each_field<kPaper>(record, [&](const auto& field) {
+                const auto value = lane(field, std::countr_zero(bits));
+                std::memcpy(to, &value, sizeof(value));
+                to += sizeof(value);
+            });
+        }
+    }
+
+  private:
+    std::vector<std::byte> memory_;
+};
+
+std::vector<unsigned> survivor_masks(std::size_t count) {
+    std::mt19937 random(1);
+    std::vector<unsigned> masks(count);
+    for (unsigned& mask : masks)
+        for (int i = 0; i < kRays; ++i) mask |= (random() % 4 != 0 ? 1U : 0U) << static_cast<unsigned>(i);
+    return masks;
+}
+
+template <class Records>
+std::size_t pass(Records& records, std::size_t count, const std::vector<unsigned>& masks) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; i += kRays) {
+        RayRecord<Real> record = records.template load<Real>(i);
+        for (int k = 0; k < 3; ++k) record.throughput[k] = record.throughput[k] * Real(0.5F) + Real(0.25F);
+        records.template append<Real>(kept, record, masks[i / kRays], count);
+        kept += static_cast<std::size_t>(std::popcount(masks[i / kRays]));
+    }
+    return kept;
+}
+
+/// Both layouts must hold the same records afterwards.
+bool layouts_agree() {
+    constexpr std::size_t kCount = 1024;
+    const std::vector<unsigned> masks = survivor_masks(kCount / kRays);
+    RayColumns<kPaper, float> columns(kCount);
+    RayRows rows(kCount);
+    const std::size_t kept = pass(columns, kCount, masks);
+    if (pass(rows, kCount, masks) != kept) return false;
+    for (std::size_t i = 0; i + kRays <= kept; ++i)
+        if (lane(columns.load<Real>(i).throughput[0], 0) != lane(rows.load<Real>(i).throughput[0], 0)) return false;
+    return true;
+}
+
+template <class Records>
+void shade_memory(benchmark::State& state) {
+    if (!layouts_agree()) {
+        state.SkipWithError("the layouts disagree");
+        return;
+    }
+    const auto count = static_cast<std::size_t>(state.range(0));
+    const std::vector<unsigned> masks = survivor_masks(count / kRays);
+    Records records(count);
+    for (auto _ : state) benchmark::DoNotOptimize(pass(records, count, masks));
+    state.counters["rays/s"] =
+        benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsIterationInvariantRate);
+    state.counters["bytes/ray"] = static_cast<double>(record_bytes<kPaper, float>());
+}
+
+BENCHMARK(shade_memory<RayColumns<kPaper, float>>)
+    ->Name("record/layout/structure_of_arrays")
+    ->RangeMultiplier(8)
+    ->Range(1024, 65536)
+    ->UseRealTime();
+BENCHMARK(shade_memory<RayRows>)
+    ->Name("record/layout/array_of_structures")
+    ->RangeMultiplier(8)
+    ->Range(1024, 65536)
+    ->UseRealTime();
+
+}  // namespace
+}  // namespace raypool
+
+int main(int argc, char** argv) {
+    if (!raypool::begin_benchmarks(argc, argv)) return 2;
+    benchmark::RunSpecifiedBenchmarks();
+}

@@ -1,0 +1,172 @@
+/// The sums of integer accumulators are exact, whoever adds what when; those of real numbers are only close.
+#include "wavefront/accumulator.h"
+
+#include <omp.h>
+
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "tests/random_inputs.h"
+
+namespace raypool::wavefront {
+namespace {
+
+using test::RandomInputs;
+
+constexpr std::int64_t kWidth = 5;
+constexpr std::int64_t kHeight = 3;
+constexpr std::size_t kPixels = kWidth * kHeight;
+constexpr int kThreads = 4;
+constexpr std::size_t kDeposits = 8192;
+constexpr double kMostRadiance = 1000;
+constexpr std::int64_t kBefore = 12345;  ///< what every sum of the framebuffer holds at first
+
+struct Deposit {
+    std::uint32_t pixel;
+    Vec3<float> radiance;
+};
+
+std::vector<Deposit> deposits(std::uint64_t seed) {
+    RandomInputs random(seed);
+    std::vector<Deposit> all;
+    for (std::size_t i = 0; i < kDeposits; ++i) {
+        Vec3<float> radiance;
+        for (int k = 0; k < 3; ++k) radiance[k] = static_cast<float>(std::exp(random.uniform(-12, 6)));
+        all.push_back({static_cast<std::uint32_t>(random.below(kPixels)), radiance});
+    }
+    return all;
+}
+
+Framebuffer framebuffer() {
+    Framebuffer out(kWidth, kHeight, FixedPoint::make(kDeposits, kMostRadiance));
+    for (std::int64_t& sum : out.sums()) sum = kBefore;
+    return out;
+}
+
+std::vector<std::int64_t> sums_of(const Framebuffer& framebuffer) {
+    return {framebuffer.sums().begin(), framebuffer.sums().end()};
+}
+
+std::vector<std::int64_t> expected_sums(const std::vector<Deposit>& all) {
+    Framebuffer out = framebuffer();
+    SampleConverter converter(out.fixed_point());
+    for (const Deposit& deposit : all) out.add(deposit.pixel, converter.convert(deposit.radiance));
+    return sums_of(out);
+}
+
+/// All threads at once add to `accumulator`, a few deposits at a time, in an order made by `seed`. With `owned` each
+/// thread adds what belongs to its own pixels, otherwise whatever comes.
+void add_all(AccumulatorBase<float>& accumulator, const FixedPoint& fixed, const std::vector<Deposit>& all,
+             std::uint64_t seed, bool owned) {
+    std::vector<std::size_t> order(all.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    RandomInputs random(seed);
+    for (std::size_t i = order.size() - 1; i > 0; --i)
+        std::swap(order[i], order[static_cast<std::size_t>(random.below(static_cast<int>(i + 1)))]);
+#pragma omp parallel num_threads(kThreads)
+    {
+        const int thread = omp_get_thread_num();
+        const auto threads = static_cast<std::size_t>(omp_get_num_threads());
+        SampleConverter converter(fixed);
+        Deposits<float> some;
+        some.reserve(64);
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            const Deposit& deposit = all[order[i]];
+            if ((owned ? deposit.pixel : i) % threads != static_cast<std::size_t>(thread)) continue;
+            some.put<float>(deposit.pixel, deposit.radiance, 1);
+            if (some.count() < 64) continue;
+            accumulator.add(some, converter, thread);
+            some.clear();
+        }
+        accumulator.add(some, converter, thread);
+    }
+}
+
+class Exact : public testing::TestWithParam<Accumulator> {};
+
+TEST_P(Exact, SumsDoNotDependOnOrderNorOnContention) {
+    const std::vector<Deposit> all = deposits(1);
+    const std::vector<std::int64_t> expected = expected_sums(all);
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+        Framebuffer out = framebuffer();
+        const auto accumulator = make_accumulator<float>(GetParam(), out, kThreads);
+        add_all(*accumulator, out.fixed_point(), all, seed, GetParam() == Accumulator::OwnedInt64);
+        accumulator->finish();
+        ASSERT_EQ(sums_of(out), expected);
+    }
+}
+
+TEST_P(Exact, SumsLeaveBadSamplesOutWholeAndAccountForThem) {
+    Framebuffer out = framebuffer();
+    const auto accumulator = make_accumulator<float>(GetParam(), out, 1);
+    SampleConverter converter(out.fixed_point());
+    Deposits<float> some;
+    some.reserve(2);
+    some.put<float>(2, vec3<float>(1, std::numeric_limits<float>::quiet_NaN(), 1), 1);
+    some.put<float>(3, vec3<float>(1, 1, std::numeric_limits<float>::infinity()), 1);
+    accumulator->add(some, converter, 0);
+    accumulator->finish();
+    EXPECT_EQ(converter.audit().non_finite, 2);
+    EXPECT_EQ(sums_of(out), sums_of(framebuffer()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Accumulators, Exact,
+                         testing::Values(Accumulator::OwnedInt64, Accumulator::AtomicInt64, Accumulator::PrivateInt64));
+
+class Rounded : public testing::TestWithParam<std::pair<Accumulator, double>> {};
+
+TEST_P(Rounded, SumsAreCloseToTheExactOnesAndReachTheFramebufferInTheEnd) {
+    const auto [kind, tolerance] = GetParam();
+    const std::vector<Deposit> all = deposits(2);
+    const std::vector<std::int64_t> expected = expected_sums(all);
+    Framebuffer out = framebuffer();
+    const auto accumulator = make_accumulator<float>(kind, out, kThreads);
+    add_all(*accumulator, out.fixed_point(), all, 3, false);
+    EXPECT_EQ(sums_of(out), sums_of(framebuffer())) << "nothing is there before finish()";
+    accumulator->finish();
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_NEAR(static_cast<double>(out.sums()[i]), static_cast<double>(expected[i]),
+                    tolerance * static_cast<double>(expected[i]));
+}
+
+INSTANTIATE_TEST_SUITE_P(Accumulators, Rounded,
+                         testing::Values(std::pair{Accumulator::AtomicFloat, 1e-4},
+                                         std::pair{Accumulator::AtomicDouble, 1e-9}));
+
+TEST(Accumulators, SayHowMuchMemoryTheyTakeBesideTheFramebuffer) {
+    Framebuffer out = framebuffer();
+    const auto bytes = [&](Accumulator kind) { return make_accumulator<float>(kind, out, kThreads)->bytes(); };
+    EXPECT_EQ(bytes(Accumulator::OwnedInt64), 0U);
+    EXPECT_EQ(bytes(Accumulator::AtomicInt64), 0U);
+    EXPECT_EQ(bytes(Accumulator::PrivateInt64), kThreads * 3 * kPixels * sizeof(std::int64_t));
+    EXPECT_EQ(bytes(Accumulator::AtomicFloat), 3 * kPixels * sizeof(float));
+    EXPECT_EQ(bytes(Accumulator::AtomicDouble), 3 * kPixels * sizeof(double));
+}
+
+TEST(Deposits, KeepTheLanesAskedForInOrder) {
+    using Real = Wide<float, stdx::native_simd<float>::size()>;
+    RandomInputs random(4);
+    Deposits<float> all;
+    constexpr int kRegisters = 20;
+    all.reserve(kRegisters * kLanes<Real>);
+    std::vector<std::uint32_t> expected;
+    for (int i = 0; i < kRegisters; ++i) {
+        Uint32<Real> pixel;
+        for (int k = 0; k < kLanes<Real>; ++k) pixel[k] = random.word() >> 9U;
+        const Real red = from_uint32<Real>(pixel);
+        const unsigned bits = random.word() & ((1U << kLanes<Real>)-1);
+        all.put<Real>(pixel, vec3<Real>(red, red + Real(1), red + Real(2)), bits);
+        for (int k = 0; k < kLanes<Real>; ++k)
+            if ((bits >> k & 1U) != 0) expected.push_back(pixel[k]);
+    }
+    ASSERT_EQ(all.count(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_EQ(all.pixel(i), expected[i]);
+        const auto red = static_cast<float>(expected[i]);
+        EXPECT_EQ(all.radiance(i), vec3<float>(red, red + 1, red + 2));
+    }
+}
+
+}  // namespace
+}  // namespace raypool::wavefront

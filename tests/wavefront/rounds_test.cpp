@@ -1,0 +1,287 @@
+/// What a render by the pool reports: the work of recursion, to the segment, and rounds whose figures add up; and what
+/// it may take: memory within its capacity, whatever the depth.
+#include <numeric>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/small_render.h"
+#include "wavefront/engine.h"
+#include "wavefront/ladder.h"
+
+namespace raypool::wavefront {
+namespace {
+
+RenderSettings settings_of(std::int64_t spp, std::int32_t depth, int threads = 1) {
+    RenderSettings settings;
+    settings.end_sample = spp;
+    settings.depth = depth;
+    settings.threads = threads;
+    settings.count_work = true;
+    return settings;
+}
+
+/// The paper's pool as it is on the ladder.
+PoolSettings shared_pool(std::int64_t capacity = PoolSettings::kSharedCapacity) {
+    PoolSettings pool = ladder(1)[0].pool;
+    pool.capacity = capacity;
+    return pool;
+}
+
+template <class Scalar>
+Rendered render_pool(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const PoolSettings& pool) {
+    return render(WavefrontEngine(pool), scene, settings);
+}
+Rendered render_recursive(const CompiledScene<float>& scene, const RenderSettings& settings) {
+    return render(recursive::IterativeEngine(), scene, settings);
+}
+
+std::int64_t sum(const RenderReport& report, std::int64_t RoundWork::*figure) {
+    std::int64_t total = 0;
+    for (const RoundWork& round : report.rounds) total += round.*figure;
+    return total;
+}
+
+/// A rung at a capacity that makes many rounds of a small image.
+struct Variant {
+    std::string name;
+    PoolSettings pool;
+};
+std::vector<Variant> variants() {
+    std::vector<Variant> all;
+    for (const Rung& rung : ladder(2)) {
+        for (const std::int64_t capacity : {17, 300, 8192}) {
+            Variant variant{fmt::format("{} of {}", rung.name, capacity), rung.pool};
+            variant.pool.capacity = capacity;
+            variant.pool.batch = 64;
+            all.push_back(variant);
+        }
+    }
+    for (const Append append : {Append::InPlace, Append::Atomic, Append::PrefixSum}) {
+        Variant variant{fmt::format("shared with append {}", static_cast<int>(append)), {}};
+        variant.pool.scope = PoolScope::Shared;
+        variant.pool.accumulator = Accumulator::PrivateInt64;
+        variant.pool.append = append;
+        variant.pool.capacity = 300;
+        variant.pool.batch = 50;
+        all.push_back(variant);
+    }
+    return all;
+}
+
+class Report : public testing::TestWithParam<const char*> {};
+
+TEST_P(Report, CountsTheSegmentsOfRecursionAndItsRoundsAddUpToThem) {
+    const CompiledScene<float> scene = compile<float>(small_scene(GetParam(), 24));
+    const Rendered expected = render_recursive(scene, settings_of(2, 50));
+    for (const Variant& variant : variants()) {
+        for (const int threads : {1, 3}) {
+            SCOPED_TRACE(fmt::format("{}, {} threads", variant.name, threads));
+            const Rendered got = render_pool(scene, settings_of(2, 50, threads), variant.pool);
+            const RenderReport& report = got.report;
+            EXPECT_EQ(got.hash(), expected.hash());
+            EXPECT_EQ(report.segments(), expected.report.segments());
+            EXPECT_EQ(report.paths(), 2 * scene.pixel_count());
+
+            const std::int64_t in_registers = variant.pool.camera == CameraStage::Fused ? report.paths() : 0;
+            EXPECT_EQ(sum(report, &RoundWork::records_in), report.segments() - in_registers);
+            EXPECT_LE(sum(report, &RoundWork::records_out), sum(report, &RoundWork::records_in));
+            for (const RoundWork& round : report.rounds) {
+                EXPECT_LE(round.records_out, round.records_in);
+                EXPECT_GE(round.lanes, round.records_in);
+                if (variant.pool.width == StageWidth::Scalar) {
+                    EXPECT_EQ(round.lanes, round.records_in);
+                }
+                EXPECT_GE(round.wait_s, 0);
+                if (variant.pool.scope == PoolScope::Shared) {
+                    EXPECT_LE(round.records_in, variant.pool.capacity);
+                } else {
+                    EXPECT_LE(round.records_in, threads * variant.pool.capacity);
+                    EXPECT_EQ(round.wait_s, 0);
+                }
+            }
+        }
+    }
+}
+
+TEST_P(Report, CountsTheTestsOfRecursionWhereRaysAreTracedOneByOne) {
+    const CompiledScene<float> scene = compile<float>(small_scene(GetParam(), 24));
+    const Rendered expected = render_recursive(scene, settings_of(1, 50));
+    const Rendered got = render_pool(scene, settings_of(1, 50, 2), shared_pool(300));
+    for (const auto figure : {&ThreadWork::box_tests, &ThreadWork::primitive_tests})
+        EXPECT_EQ(got.report.total(figure), expected.report.total(figure));
+    const Rendered in_streams = render_pool(scene, settings_of(1, 50), PoolSettings{});
+    EXPECT_GE(in_streams.report.total(&ThreadWork::primitive_tests), in_streams.report.segments() / 2);
+}
+
+TEST_P(Report, ShowsTheRoundsOfAPoolThatTakesAllPathsAtOnceAsTheBouncesOfAllPaths) {
+    const CompiledScene<float> scene = compile<float>(small_scene(GetParam(), 24));
+    const Rendered got = render_pool(scene, settings_of(2, 50, 2), shared_pool(2 * scene.pixel_count()));
+    const std::vector<RoundWork>& rounds = got.report.rounds;
+    ASSERT_GE(rounds.size(), 2U);
+    ASSERT_LE(rounds.size(), 51U);
+    EXPECT_EQ(rounds[0].records_in, 0) << "the first round only takes in camera paths";
+    EXPECT_EQ(rounds[1].records_in, 2 * scene.pixel_count());
+    for (std::size_t i = 2; i < rounds.size(); ++i) EXPECT_EQ(rounds[i].records_in, rounds[i - 1].records_out);
+    EXPECT_EQ(rounds.back().records_out, 0);
+    EXPECT_GT(rounds.back().records_in, 0) << "a round that advanced nothing";
+}
+
+TEST_P(Report, IsOfOneSegmentAPathAtDepthOneAndOfNoneAtDepthZero) {
+    const CompiledScene<float> scene = compile<float>(small_scene(GetParam(), 24));
+    for (const std::int32_t depth : {0, 1}) {
+        const Rendered expected = render_recursive(scene, settings_of(2, depth));
+        for (const Variant& variant : variants()) {
+            const Rendered got = render_pool(scene, settings_of(2, depth, 2), variant.pool);
+            EXPECT_EQ(got.hash(), expected.hash()) << variant.name;
+            EXPECT_EQ(got.report.paths(), 2 * scene.pixel_count());
+            EXPECT_EQ(got.report.segments(), depth * 2 * scene.pixel_count());
+            EXPECT_EQ(sum(got.report, &RoundWork::records_out), 0);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Report, testing::Values("paper", "cornell", "mirror_corridor"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST(RoundsReport, IsEmptyUnlessWorkIsCounted) {
+    const CompiledScene<float> scene = compile<float>(small_scene("paper", 16));
+    RenderSettings settings = settings_of(1, 50);
+    settings.count_work = false;
+    const Rendered got = render_pool(scene, settings, shared_pool());
+    EXPECT_TRUE(got.report.rounds.empty());
+    EXPECT_EQ(got.report.record_bytes, 56U);
+    EXPECT_EQ(got.report.segments(), render_recursive(scene, settings).report.segments());
+}
+
+TEST(Progress, ReachesTheNumberOfPathsAtAnyDepthAndInAnyPool) {
+    const CompiledScene<float> scene = compile<float>(small_scene("paper", 24));
+    for (const Variant& variant : variants()) {
+        for (const std::int32_t depth : {0, 1, 20}) {
+            Progress progress;
+            RenderSettings settings = settings_of(3, depth, 2);
+            settings.progress = &progress;
+            render_pool(scene, settings, variant.pool);
+            EXPECT_EQ(progress.paths, 3 * scene.pixel_count()) << variant.name << ", depth " << depth;
+        }
+    }
+}
+
+TEST(EmptyRangeOfSamples, AddsNothing) {
+    const CompiledScene<float> scene = compile<float>(small_scene("paper", 8));
+    RenderSettings settings = settings_of(4, 50, 2);
+    settings.first_sample = 4;
+    for (const Variant& variant : variants()) {
+        const Rendered got = render_pool(scene, settings, variant.pool);
+        EXPECT_EQ(got.report.paths(), 0);
+        EXPECT_EQ(got.hash(), render_recursive(scene, settings).hash());
+    }
+}
+
+/// A camera inside a mirror: no path ever ends. The lens is open and the mirror is rough, so that all paths differ.
+Scene cavity() {
+    Scene scene;
+    scene.width = 4;
+    scene.height = 2;
+    scene.camera.look_from = {0.1, 0.2, 0.3};
+    scene.textures.emplace_back().even = {1, 1, 1};
+    Material& mirror = scene.materials.emplace_back();
+    mirror.kind = Material::Kind::Metal;
+    scene.spheres.emplace_back().radius = 3;
+    return scene;
+}
+
+TEST(DeepPaths, EndInASmallPoolOfEitherScopeInTheMemoryOfShallowOnes) {
+    constexpr std::int32_t kDepth = 100'000;
+    const CompiledScene<float> scene = compile<float>(cavity());
+    PoolSettings thread_pool;
+    thread_pool.capacity = 64;
+    for (const PoolSettings& pool : {thread_pool, shared_pool(64)}) {
+        const Rendered shallow = render_pool(scene, settings_of(1, 3), pool);
+        const Rendered deep = render_pool(scene, settings_of(1, kDepth), pool);
+        EXPECT_EQ(deep.report.segments(), std::int64_t{kDepth} * scene.pixel_count());
+        EXPECT_EQ(deep.report.pool_bytes, shallow.report.pool_bytes);
+        EXPECT_LT(deep.report.pool_bytes, 1U << 20U);
+        EXPECT_LE(deep.report.rounds.size(), 4096U) << "one figure for each round would grow with the depth";
+        const std::int64_t in_registers = pool.camera == CameraStage::Fused ? scene.pixel_count() : 0;
+        EXPECT_EQ(sum(deep.report, &RoundWork::records_in), deep.report.segments() - in_registers);
+    }
+}
+
+TEST(DeepPaths, AmongShallowOnesMakeTheImageOfRecursion) {
+    const CompiledScene<float> scene = compile<float>(small_scene("mirror_corridor", 17));
+    const Rendered expected = render_recursive(scene, settings_of(1, 100'000));
+    PoolSettings pool;
+    pool.capacity = 64;
+    const Rendered got = render_pool(scene, settings_of(1, 100'000), pool);
+    EXPECT_EQ(got.hash(), expected.hash());
+    EXPECT_EQ(got.report.segments(), expected.report.segments());
+    EXPECT_GT(got.report.segments(), 100 * got.report.paths()) << "no path is deep";
+}
+
+class Splitting : public testing::TestWithParam<int> {};
+
+TEST_P(Splitting, MakesTheImageOfRecursionInMemoryThatDoesNotDependOnDepthOrSamples) {
+    const CompiledScene<float> scene = compile<float>(small_scene("glass_stack", 12));
+    RenderSettings settings = settings_of(2, 30);
+    settings.split_depth = GetParam();
+    const Rendered expected = render_recursive(scene, settings);
+    std::vector<Variant> all = variants();
+    for (const std::int64_t batch : {1, 7, 128}) {
+        for (Variant variant : variants()) {
+            if (variant.pool.scope != PoolScope::Shared || variant.pool.capacity != 300) continue;
+            variant.name += fmt::format(", batch {}", batch);
+            variant.pool.capacity = 129;
+            variant.pool.batch = batch;
+            all.push_back(variant);
+        }
+    }
+    for (const Variant& variant : all) {
+        SCOPED_TRACE(variant.name);
+        settings.threads = 2;
+        const Rendered got = render_pool(scene, settings, variant.pool);
+        EXPECT_EQ(got.hash(), expected.hash());
+        EXPECT_EQ(got.report.segments(), expected.report.segments());
+        RenderSettings less = settings;
+        less.depth = 2;
+        less.end_sample = 1;
+        EXPECT_EQ(render_pool(scene, less, variant.pool).report.pool_bytes, got.report.pool_bytes);
+        const std::int64_t most = std::max(variant.pool.capacity, std::int64_t{1} << settings.split_depth);
+        const bool is_shared = variant.pool.scope == PoolScope::Shared;
+        for (const RoundWork& round : got.report.rounds) EXPECT_LE(round.records_in, is_shared ? most : 2 * most);
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Depths, Splitting, testing::Values(1, 2, 7));
+
+TEST(OwnedAccumulator, IsRefusedWithASharedPoolBeforeAnythingIsAdded) {
+    const CompiledScene<float> scene = compile<float>(small_scene("paper", 8));
+    PoolSettings pool = shared_pool();
+    pool.accumulator = Accumulator::OwnedInt64;
+    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(1, scene.max_radiance));
+    const std::string before = framebuffer.hash();
+    try {
+        WavefrontEngine(pool).render(scene, settings_of(1, 50), framebuffer);
+        FAIL() << "rendered";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("--accumulator"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("--pool-scope"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(framebuffer.hash(), before);
+}
+
+TEST(RoundedAccumulators, MakeAnImageThatIsOnlyClose) {
+    const CompiledScene<float> scene = compile<float>(small_scene("paper", 16));
+    const Rendered expected = render_recursive(scene, settings_of(16, 50));
+    for (const Accumulator accumulator : {Accumulator::AtomicFloat, Accumulator::AtomicDouble}) {
+        PoolSettings pool = shared_pool(100);
+        pool.accumulator = accumulator;
+        const Rendered got = render_pool(scene, settings_of(16, 50, 2), pool);
+        for (int channel = 0; channel < 3; ++channel)
+            EXPECT_NEAR(got.mean(channel), expected.mean(channel), 1e-5 * expected.mean(channel));
+        EXPECT_EQ(got.report.segments(), expected.report.segments());
+    }
+}
+
+}  // namespace
+}  // namespace raypool::wavefront

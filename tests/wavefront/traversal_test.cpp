@@ -1,0 +1,262 @@
+/// Packets and streams against single rays: the same hit to the last bit, however many rays go together.
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <gtest/gtest.h>
+
+#include "tests/random_inputs.h"
+#include "wavefront/packet.h"
+#include "wavefront/stream.h"
+
+namespace raypool::wavefront {
+namespace {
+
+using test::RandomInputs;
+
+template <class Scalar>
+using Native = Wide<Scalar, stdx::native_simd<Scalar>::size()>;
+
+Scene empty_scene() {
+    Scene scene;
+    scene.textures.emplace_back();
+    scene.materials.emplace_back();
+    scene.camera.shutter_close = 1;
+    return scene;
+}
+Scene one_sphere() {
+    Scene scene = empty_scene();
+    scene.spheres.push_back({{1, 2, 3}, {1, 2, 3}, 2, 0});
+    return scene;
+}
+Scene still_spheres() {
+    RandomInputs random(1);
+    Scene scene = empty_scene();
+    for (int i = 0; i < 300; ++i) {
+        const Vector3d center = i % 3 == 0 ? random.lattice_point<double>(5) : random.point<double>(6);
+        scene.spheres.push_back({center, center, i % 3 == 0 ? 0.5 : random.uniform(0.05, 1), 0});
+    }
+    return scene;
+}
+Scene moving_spheres() {
+    RandomInputs random(2);
+    Scene scene = still_spheres();
+    for (Sphere& sphere : scene.spheres)
+        if (!random.one_in(3)) sphere.center1 += random.point<double>(2);
+    return scene;
+}
+/// Every sphere and quad several times over, near each other in some trees and far in others.
+Scene twins() {
+    RandomInputs random(3);
+    Scene scene = still_spheres();
+    scene.spheres.resize(60);
+    for (std::size_t i = 0; i < 180; ++i) scene.spheres.push_back(scene.spheres[59 - i % 60]);
+    for (std::size_t i = 0; i < 20; ++i)
+        scene.quads.push_back({random.lattice_point<double>(5), {2, 0, 0}, {0, 1, 1}, 0});
+    for (std::size_t i = 0; i < 40; ++i) scene.quads.push_back(scene.quads[19 - i % 20]);
+    return scene;
+}
+Scene all_shapes() {
+    RandomInputs random(4);
+    Scene scene = moving_spheres();
+    for (int i = 0; i < 100; ++i) {
+        const Vector3d corner = i % 2 == 0 ? random.point<double>(6) : random.lattice_point<double>(5);
+        const Vector3d u = i % 2 == 0 ? random.direction<double>() : Vector3d(2, 0, 0);
+        scene.quads.push_back({corner, u, i % 2 == 0 ? Vector3d(u.unitOrthogonal()) : Vector3d(0, 1, 0), 0});
+    }
+    for (int i = 0; i < 9; ++i) {
+        const Vector3d point = 12 * random.direction<double>();
+        scene.planes.push_back({point, point, 0});
+    }
+    scene.spheres.push_back({{0, -1006, 0}, {0, -1006, 0}, 1000, 0});  // large: outside the tree
+    return scene;
+}
+
+struct TestScene {
+    const char* name;
+    Scene (*make)();
+};
+constexpr TestScene kScenes[] = {
+    {"empty_scene", empty_scene},       {"one_sphere", one_sphere}, {"still_spheres", still_spheres},
+    {"moving_spheres", moving_spheres}, {"twins", twins},           {"all_shapes", all_shapes}};
+
+template <class Scalar>
+struct StartedRay {
+    Ray<Scalar> ray;
+    std::int32_t leaving_id;
+};
+
+template <class Scalar>
+Hit<Scalar> single_hit(const CompiledScene<Scalar>& scene, const StartedRay<Scalar>& start) {
+    NoWorkCount work;
+    return closest_hit<kEverything>(scene, start.ray, start.leaving_id, work);
+}
+
+/// From anywhere, or, half of them, from where a ray before hit something. One in four along an axis.
+template <class Scalar>
+std::vector<StartedRay<Scalar>> random_rays(const CompiledScene<Scalar>& scene, std::size_t count,
+                                            RandomInputs& random) {
+    std::vector<StartedRay<Scalar>> rays;
+    while (rays.size() < count) {
+        const bool is_on_lattice = random.one_in(2);
+        StartedRay<Scalar> start;
+        start.ray.origin = is_on_lattice ? random.lattice_point<Scalar>(6) : random.point<Scalar>(9);
+        start.ray.direction = random.direction<Scalar>();
+        if (random.one_in(4)) {
+            start.ray.direction = random.lattice_point<Scalar>(0);  // zeros of either sign
+            const int axis = random.below(3);
+            start.ray.direction[axis] = random.one_in(2) ? 1 : -1;
+        }
+        start.ray.time = random.unit_interval<Scalar>();
+        start.leaving_id = kNoPrimitive;
+        if (!rays.empty() && random.one_in(2)) {
+            const Ray<Scalar>& before = rays.back().ray;
+            const Hit<Scalar> hit = single_hit(scene, rays.back());
+            if (hit.primitive_id != kNoPrimitive) {
+                start.ray.origin = along<Scalar>(before.origin, hit.t, before.direction);
+                start.ray.time = before.time;
+                start.leaving_id = static_cast<std::int32_t>(hit.primitive_id);
+            }
+        }
+        rays.push_back(start);
+    }
+    return rays;
+}
+
+template <class V>
+void set_lane(V& v, int i, auto value) {
+    if constexpr (Simd<V>) {
+        v[i] = static_cast<typename V::value_type>(value);
+    } else {
+        v = static_cast<V>(value);
+    }
+}
+
+/// Rays first, first + 1, ... by lane; the last ray again in lanes beyond it.
+template <class Real>
+WideRays<Real> gather(const std::vector<StartedRay<ScalarOf<Real>>>& rays, std::size_t first) {
+    WideRays<Real> wide;
+    for (int i = 0; i < kLanes<Real>; ++i) {
+        const auto& start = rays[std::min(first + static_cast<std::size_t>(i), rays.size() - 1)];
+        for (int k = 0; k < 3; ++k) {
+            set_lane(wide.ray.origin[k], i, start.ray.origin[k]);
+            set_lane(wide.ray.direction[k], i, start.ray.direction[k]);
+        }
+        set_lane(wide.ray.time, i, start.ray.time);
+        set_lane(wide.leaving_id, i, start.leaving_id);
+    }
+    wide.inverse = ray_inverse<Real>(wide.ray.direction);
+    return wide;
+}
+
+/// As the intersection stage does it: large shapes, quads, spheres.
+template <class Real, class Work>
+void trace_stream(const CompiledScene<ScalarOf<Real>>& scene, const std::vector<StartedRay<ScalarOf<Real>>>& rays,
+                  RayStream<ScalarOf<Real>>& stream, Work& work) {
+    using Row = RayRow<ScalarOf<Real>>;
+    for (std::size_t first = 0; first < rays.size(); first += kLanes<Real>) {
+        const WideRays<Real> wide = gather<Real>(rays, first);
+        Hit<Real> hit;
+        const std::size_t count = std::min<std::size_t>(kLanes<Real>, rays.size() - first);
+        intersect_large<kEverything, Real>(scene, wide, static_cast<int>(count), hit, work);
+        for (int i = 0; i < static_cast<int>(count); ++i) {
+            const std::size_t at = first + static_cast<std::size_t>(i);
+            Row& row = stream.rows()[at];
+            for (int k = 0; k < 3; ++k) {
+                row.value[Row::kOrigin + k] = rays[at].ray.origin[k];
+                row.value[Row::kScale + k] = 1 / rays[at].ray.direction[k];
+                row.value[Row::kDirection + k] = rays[at].ray.direction[k];
+            }
+            row.value[Row::kLeaving] = static_cast<ScalarOf<Real>>(rays[at].leaving_id);
+            row.value[Row::kTime] = rays[at].ray.time;
+            row.value[Row::kDistance] = stream.distance()[at] = lane(hit.t, i);
+            stream.primitive_id()[at] = static_cast<std::int32_t>(lane(hit.primitive_id, i));
+        }
+    }
+    detail::walk_stream<kEverything, Real>(scene.quad_stream_tree, stream, rays.size(), work);
+    detail::walk_stream<kEverything, Real>(scene.sphere_stream_tree, stream, rays.size(), work);
+}
+
+int tree_depth(const auto& scene) {
+    return std::max(scene.sphere_stream_tree.depth, scene.quad_stream_tree.depth);
+}
+
+template <class Scalar>
+class RaysTogether : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(RaysTogether, Scalars);
+
+TYPED_TEST(RaysTogether, HitInStreamsOfAnyLengthWhatEachHitsAlone) {
+    for (const TestScene& test : kScenes) {
+        const CompiledScene<TypeParam> scene = compile<TypeParam>(test.make());
+        RandomInputs random(5);
+        std::size_t hits = 0;
+        for (const std::size_t length : {1, 2, 7, 8, 9, 15, 16, 17, 1000}) {
+            for (std::size_t left = 4000; left >= length && left > 3000; left -= std::min<std::size_t>(left, 50)) {
+                RayStream<TypeParam> stream(length, tree_depth(scene));  // no longer than it must be
+                const auto rays = random_rays(scene, length, random);
+                NoWorkCount work;
+                trace_stream<Native<TypeParam>>(scene, rays, stream, work);
+                for (std::size_t i = 0; i < length; ++i) {
+                    const Hit<TypeParam> expected = single_hit(scene, rays[i]);
+                    ASSERT_EQ(stream.primitive_id()[i], expected.primitive_id)
+                        << test.name << ", ray " << i << " of " << length << ": " << rays[i].ray.origin.transpose()
+                        << " + t " << rays[i].ray.direction.transpose() << ", leaving " << rays[i].leaving_id;
+                    ASSERT_EQ(stream.distance()[i], expected.t) << test.name;
+                    hits += expected.primitive_id != kNoPrimitive ? 1 : 0;
+                }
+            }
+        }
+        if (test.make != empty_scene) {
+            EXPECT_GT(hits, 100U) << test.name;
+        }
+    }
+}
+
+template <class Real>
+void expect_packets_hit_what_single_rays_hit() {
+    for (const TestScene& test : kScenes) {
+        const auto scene = compile<ScalarOf<Real>>(test.make());
+        RandomInputs random(6);
+        for (int round = 0; round < 300; ++round) {
+            auto rays = random_rays(scene, kLanes<Real>, random);
+            for (auto& start : rays) {
+                start.leaving_id = kNoPrimitive;  // as camera rays do
+                if (round % 2 != 0) start.ray.origin = rays[0].ray.origin;
+            }
+            const int count = 1 + random.below(kLanes<Real>);
+            const Mask<Real> is_active = from_uint32<Real>(lane_numbers<Real>()) < Real(static_cast<float>(count));
+            NoWorkCount work;
+            const Hit<Real> hit = closest_hits<kEverything, Real>(scene, gather<Real>(rays, 0).ray, is_active, work);
+            for (int i = 0; i < count; ++i) {
+                const auto expected = single_hit(scene, rays[static_cast<std::size_t>(i)]);
+                ASSERT_EQ(lane(hit.primitive_id, i), expected.primitive_id) << test.name << ", ray " << i;
+                ASSERT_EQ(lane(hit.t, i), expected.t) << test.name << ", ray " << i;
+            }
+        }
+    }
+}
+TYPED_TEST(RaysTogether, HitInPacketsWhatEachHitsAlone) {
+    expect_packets_hit_what_single_rays_hit<Native<TypeParam>>();
+}
+TYPED_TEST(RaysTogether, HitInPacketsOfOneWhatEachHitsAlone) {
+    expect_packets_hit_what_single_rays_hit<TypeParam>();
+}
+
+TEST(Stream, CountsATestForEachRayAndNoneForTheEmptyLanes) {
+    const CompiledScene<float> scene = compile<float>(one_sphere());
+    for (const std::size_t length : {1, 15, 16, 17, 33}) {
+        std::vector<StartedRay<float>> rays(length);
+        for (auto& start : rays) start = {{vec3<float>(1, 2, 9), vec3<float>(0, 0, -1), 0}, kNoPrimitive};
+        RayStream<float> stream(length, tree_depth(scene));
+        WorkCount work;
+        trace_stream<Native<float>>(scene, rays, stream, work);
+        EXPECT_EQ(work.primitive_tests, static_cast<std::int64_t>(length));
+        EXPECT_LE(work.box_tests, static_cast<std::int64_t>(length));  // none where the sphere is outside the tree
+        EXPECT_EQ(stream.distance()[length - 1], 4);
+    }
+}
+
+}  // namespace
+}  // namespace raypool::wavefront
