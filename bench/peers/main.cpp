@@ -1,8 +1,8 @@
 // raypool_peer_embree: renders a scene with the peer alone, and says how fast it was.
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <map>
 #include <span>
 #include <string>
 
@@ -45,6 +45,7 @@ int run(int argc, char** argv) {
     std::string scene_name = "paper";
     std::string output;
     std::string json_file;
+    std::string mode = "packet";
     std::int64_t width = 0;
     PeerSettings settings;
     settings.spp = 100;
@@ -57,10 +58,9 @@ int run(int argc, char** argv) {
         ->capture_default_str();
     app.add_option("--seed", settings.seed, "Seed of the random numbers")->capture_default_str();
     app.add_option("--threads", settings.threads, "Threads")->check(CLI::Range(1, 4096))->capture_default_str();
-    app.add_option("--mode", settings.mode, "single or packet")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, PeerMode>{{"single", PeerMode::Single}, {"packet", PeerMode::Packet}}))
-        ->default_str("packet");
+    app.add_option("--mode", mode, "One path at a time or packets of them")
+        ->check(CLI::IsMember({"single", "packet"}))
+        ->capture_default_str();
     app.add_option("-o,--output", output, "Image to write: .png, .exr or .pfm");
     app.add_option("--json", json_file, "File for the figures");
     try {
@@ -69,6 +69,7 @@ int run(int argc, char** argv) {
         return app.exit(error) == 0 ? 0 : 2;
     }
 
+    settings.mode = mode == "single" ? PeerMode::Single : PeerMode::Packet;
     Scene scene = load_scene(scene_name);
     if (width > 0) {
         scene.height = std::max<std::int64_t>(1, scene.height * width / scene.width);

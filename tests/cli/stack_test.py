@@ -42,11 +42,11 @@ class Recursion(CommandTest):
         self.write("scene.json", INSIDE)
 
     def test_runs_as_deep_as_the_main_threads_stack_holds(self):
-        self.assert_greatest_depth_runs("--threads", 1, least=5000)
+        self.assert_greatest_depth_runs("--threads", 1, least=1000)
 
     def test_runs_as_deep_as_the_workers_stacks_hold(self):
         loop = ("--threads", 2, "--grain", "pixel", "--schedule", "static,1")
-        for size, least in (("512k", 125), ("2M", 1000)):
+        for size, least in (("1M", 125), ("4M", 1000)):
             self.assert_greatest_depth_runs(*loop, least=least, environment={"OMP_STACKSIZE": size})
 
     def test_runs_as_deep_as_it_says_in_every_variant(self):
