@@ -97,7 +97,7 @@ std::vector<Contender> contenders(const Scene& scene, const CompiledScene<float>
     };
     if (with_peers) {
         add_peer("embree-1", PeerMode::Single);
-        add_peer("embree-16", PeerMode::Packet16);
+        add_peer("embree-packet", PeerMode::Packet);
     }
 #else
     (void)scene, (void)with_peers;
@@ -206,8 +206,8 @@ int compare(const CompareOptions& options) {
 
     bool is_same = true;
     for (const Contender& contender : list)
-        is_same =
-            is_same && contender.hash == list.front().hash && contender.last.segments() == list.front().last.segments();
+        is_same = is_same && (contender.is_peer || (contender.hash == list.front().hash &&
+                                                    contender.last.segments() == list.front().last.segments()));
     fmt::print("{}: {} x {}, {} spp, depth {}, {} thread{}, {} interleaved run{}\n", scene.name, scene.width,
                scene.height, options.spp, settings.depth, settings.threads, settings.threads == 1 ? "" : "s", repeats,
                repeats == 1 ? "" : "s");

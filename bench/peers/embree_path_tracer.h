@@ -16,7 +16,6 @@ namespace raypool::peers {
 enum class PeerMode : std::uint8_t {
     Single,  ///< a path at a time, rtcIntersect1
     Packet,  ///< packet_width() paths at a time; a path that ends makes room for the next camera ray
-    Packet16 = Packet
 };
 
 /// 16 (rtcIntersect16) where this was compiled for AVX-512, else 8 (rtcIntersect8).
