@@ -58,7 +58,10 @@ class Builder {
     [[nodiscard]] Eigen::Vector3d center(std::uint32_t box) const {
         return 0.5 * boxes_[box].low + 0.5 * boxes_[box].high;
     }
-    [[nodiscard]] double blocks(std::uint32_t count) const { return (count + block_ - 1) / block_; }
+    [[nodiscard]] double blocks(std::uint32_t count) const {
+        const std::uint32_t whole = (count + block_ - 1) / block_;
+        return whole;
+    }
 
     [[nodiscard]] BinaryBvh::Node node(std::uint32_t first, std::uint32_t count) const {
         BinaryBvh::Node result{.box = {}, .left = 0, .first = first, .count = count};
