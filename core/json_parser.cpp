@@ -18,7 +18,10 @@ using nlohmann::json;
 /// Whatever the input held, the message stays one printable line of bearable length.
 [[noreturn]] void throw_one_line(std::string message) {
     constexpr std::size_t kLongest = 1000;
-    if (message.size() > kLongest) message = message.substr(0, kLongest) + "...";
+    if (message.size() > kLongest) {
+        message.resize(kLongest);
+        message += "...";
+    }
     for (char& c : message) {
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
     }
