@@ -37,7 +37,7 @@ struct Progress {
 
 struct RenderSettings {
     std::int64_t first_sample = 0;  ///< samples [first_sample, end_sample) of every pixel
-    std::int64_t end_sample = 1;    ///< at most 2^31
+    std::int64_t end_sample = 1;    ///< at most 2^31 - 1
     std::int32_t depth = 50;        ///< most segments of a path, up to path_step::kMostBounces; 0 makes a black image
     std::uint64_t seed = 0;
     int split_depth = 0;  ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits

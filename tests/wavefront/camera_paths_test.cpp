@@ -109,13 +109,13 @@ TYPED_TEST(CameraPathsBy, PartsAreTheSameAsSkipping) {
 
 TEST(CameraPaths, OfTheLargestImageKeepTheirNumbers) {
     const std::int64_t edge = 65536;
-    const CameraPaths paths({0, edge, 0, edge}, edge, 0, std::int64_t{1} << 31);
+    const CameraPaths paths({0, edge, 0, edge}, edge, 0, (std::int64_t{1} << 31) - 1);
     CameraPaths end = paths.part(paths.left() - 1, 1);
     const CameraLanes<float> last = end.next<float>(1);
     EXPECT_EQ(last.x, edge - 1);
     EXPECT_EQ(last.y, edge - 1);
     EXPECT_EQ(last.pixel, 0xffffffffU);
-    EXPECT_EQ(last.sample, 0x7fffffffU);
+    EXPECT_EQ(last.sample, 0x7ffffffeU);
 }
 
 }  // namespace
