@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/studies/statistics.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/pool_options.h"
@@ -105,29 +106,9 @@ std::vector<Contender> contenders(const Scene& scene, const CompiledScene<float>
     return list;
 }
 
-struct Spread {
-    double median, low, high;
-};
-Spread spread(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t n = values.size();
-    return {0.5 * (values[(n - 1) / 2] + values[n / 2]), values.front(), values.back()};
-}
-
-/// Largest over mean of the segments that threads traced: 1 is perfect balance of work.
+/// Balance of the segments that threads traced.
 double load_imbalance(const RenderReport& report) {
-    std::int64_t most = 0;
-    for (const ThreadWork& thread : report.threads) most = std::max(most, thread.segments);
-    const std::int64_t all = report.segments();
-    return all == 0 ? 1
-                    : static_cast<double>(most) * static_cast<double>(report.threads.size()) / static_cast<double>(all);
-}
-
-/// Part of the threads' time that was spent waiting for other threads.
-double waiting(const RenderReport& report) {
-    double wait = 0;
-    for (const ThreadWork& thread : report.threads) wait += thread.wait_s;
-    return wait / (report.seconds * static_cast<double>(report.threads.size()));
+    return studies::max_over_mean(studies::by_thread(report, &ThreadWork::segments));
 }
 
 std::string run_once(Contender& contender, const CompiledScene<float>& scene, const RenderSettings& settings) {
@@ -153,11 +134,11 @@ void print_table(const std::vector<Contender>& list) {
     fmt::print("{:<14} {:>9} {:>22} {:>9} {:>8} {:>7} {:>9}  {}\n", "engine", "M paths/s", "ratio (low to high)",
                "load", "waiting", "bytes", "pools", "hash");
     for (const Contender& contender : list) {
-        const Spread rate = spread(contender.rate);
-        const Spread ratio = spread(contender.ratio);
+        const studies::Spread rate = studies::spread(contender.rate);
+        const studies::Spread ratio = studies::spread(contender.ratio);
         fmt::print("{:<14} {:>9.2f} {:>6.2f} ({:>5.2f} to {:>5.2f}) {:>9.3f} {:>6.1f} % {:>7} {:>6.2f} MB  {}\n",
                    contender.name, rate.median, ratio.median, ratio.low, ratio.high, load_imbalance(contender.last),
-                   100 * waiting(contender.last), contender.last.record_bytes,
+                   100 * studies::waiting(contender.last), contender.last.record_bytes,
                    static_cast<double>(contender.last.pool_bytes) / (1024 * 1024), contender.hash);
     }
 }
@@ -165,7 +146,7 @@ void print_table(const std::vector<Contender>& list) {
 nlohmann::json table_json(const std::vector<Contender>& list) {
     nlohmann::json rows = nlohmann::json::array();
     for (const Contender& contender : list) {
-        const Spread ratio = spread(contender.ratio);
+        const studies::Spread ratio = studies::spread(contender.ratio);
         rows.push_back({{"name", contender.name},
                         {"step", contender.step},
                         {"hash", contender.hash},
@@ -174,7 +155,7 @@ nlohmann::json table_json(const std::vector<Contender>& list) {
                         {"ratio_median", ratio.median},
                         {"segments", contender.last.segments()},
                         {"load_max_over_mean", load_imbalance(contender.last)},
-                        {"waiting", waiting(contender.last)},
+                        {"waiting", studies::waiting(contender.last)},
                         {"record_bytes", contender.last.record_bytes},
                         {"pool_bytes", contender.last.pool_bytes},
                         {"pool", contender.pool}});

@@ -6,19 +6,11 @@
 #include <string>
 #include <string_view>
 
-#include "core/engine.h"
+#include "core/settings_text.h"
 
 namespace raypool::cli {
 
 enum class Precision : std::uint8_t { Float, Double };
-
-/// static, dynamic or guided, with an optional chunk: "dynamic,4".
-LoopSchedule parse_schedule(std::string_view text);
-std::string to_string(const LoopSchedule& schedule);
-
-/// pixel, line or tile:N.
-Grain parse_grain(std::string_view text);
-std::string to_string(const Grain& grain);
 
 struct SampleRange {
     std::int64_t first;
@@ -35,11 +27,5 @@ int thread_count(int asked);
 
 /// Refuses an empty text, which a shell makes of a variable that is not set. For CLI::Option::check().
 std::string check_file_name(const std::string& text);
-
-/// What OMP_SCHEDULE says, and dynamic where it says nothing: equal lines are not equal work.
-LoopSchedule default_schedule();
-
-/// Sets the image's width, and its height so that the shape stays. Refuses what is not in [1, 65536].
-void set_width(Scene& scene, std::int64_t width);
 
 }  // namespace raypool::cli

@@ -11,7 +11,12 @@ namespace raypool::cli {
 /// Shows `progress` ten times a second while it lives, from a thread of its own, and wipes itself out at the end.
 class ProgressBar {
   public:
-    ProgressBar(const Progress& progress, std::int64_t total_paths, bool is_quiet);
+    /// How the rate is shown: `scale` times what is counted, a second.
+    struct Unit {
+        const char* name;
+        double scale;
+    };
+    ProgressBar(const Progress& progress, std::int64_t total, const Unit& unit, bool is_quiet);
 
   private:
     std::jthread thread_;

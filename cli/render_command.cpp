@@ -138,7 +138,7 @@ Image render_scene(const Scene& scene, bool is_quiet, RenderRecord& record) {
     record.settings.progress = &progress;
     const std::int64_t sample_count = record.settings.end_sample - record.settings.first_sample;
     {
-        const ProgressBar bar(progress, compiled.pixel_count() * sample_count, is_quiet);
+        const ProgressBar bar(progress, compiled.pixel_count() * sample_count, {"M paths/s", 1e-6}, is_quiet);
         record.report = make_engine(record.engine, record.pool)->render(compiled, record.settings, framebuffer);
     }
     record.settings.progress = nullptr;

@@ -1,0 +1,26 @@
+#include "bench/studies/registry.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/studies/studies.h"
+#include "core/error.h"
+
+namespace raypool::studies {
+
+std::vector<std::unique_ptr<Study>> all_studies() {
+    std::vector<std::unique_ptr<Study>> studies;
+    studies.push_back(schedules_study());
+    return studies;
+}
+
+std::unique_ptr<Study> make_study(const std::string& name) {
+    std::vector<std::string> names;
+    for (std::unique_ptr<Study>& study : all_studies()) {
+        if (study->name() == name) return std::move(study);
+        names.push_back(study->name());
+    }
+    throw InputError(fmt::format("study: there is no {}; there are {}", name, fmt::join(names, ", ")));
+}
+
+}  // namespace raypool::studies

@@ -1,0 +1,59 @@
+/// Renders as cases of a study: one engine, one setting, timed, with the figures that every study wants of a render.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/studies/study.h"
+#include "core/compiled_scene.h"
+#include "core/engine.h"
+
+namespace raypool::studies {
+
+/// A scene at the size of a study, compiled once and shared by its cases.
+struct StudyScene {
+    std::string name;
+    CompiledScene<float> compiled;
+};
+/// Throws InputError for a scene that cannot be read or a width that cannot be.
+std::shared_ptr<const StudyScene> study_scene(const std::string& name, std::int64_t width);
+
+/// An engine under the name that tables show.
+struct NamedEngine {
+    std::string name;
+    std::shared_ptr<const Engine> engine;
+};
+NamedEngine recursive_engine();
+NamedEngine iterative_engine();
+/// The default of the wavefront engine: the fastest pool.
+NamedEngine fused_pool();
+/// The paper's pool, for all threads, with wide stages and streams.
+NamedEngine canonical_pool();
+/// All rungs of the ladder for so many threads, without the two per-pixel engines.
+std::vector<NamedEngine> ladder_engines(int threads);
+
+struct Measured {
+    RenderReport report;
+    std::string hash;
+};
+Measured measure(const Engine& engine, const StudyScene& scene, const RenderSettings& settings);
+
+/// What fixes the image: cases with the same text must have the same hash.
+std::string image_of(const StudyScene& scene, const RenderSettings& settings);
+
+/// engine, threads, schedule, grain, width, seconds, mpaths_per_s, load_max_over_mean, waiting, hash.
+std::vector<Column> render_columns();
+Row render_row(const std::string& engine, const StudyScene& scene, const RenderSettings& settings,
+               const Measured& measured);
+
+/// A case of one row: render_row() and `extra` behind it.
+Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
+                 const RenderSettings& settings, int repeats, const Row& extra = {});
+
+/// 1, 2, 4, ... up to `most`, and `most` itself.
+std::vector<int> thread_counts(int most);
+/// Threads that can run at once here.
+int core_count();
+
+}  // namespace raypool::studies

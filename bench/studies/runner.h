@@ -1,0 +1,38 @@
+/// Runs a study: repeats interleaved over cases, images checked, every finished run kept.
+///
+/// A study's folder holds data.csv (a row or more for each repeat of each case, appended as soon as it is known),
+/// run.json (what was asked, of which build, on which machine, and what came out), summary.md and the pictures. A run
+/// that was interrupted goes on where it stopped, provided that study, options, build and machine are the same.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "bench/studies/study.h"
+#include "core/engine.h"
+
+namespace raypool::studies {
+
+/// Cases that must make one image made two. Nothing of the run that showed it is kept.
+class WrongImage : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+struct RunControl {
+    bool is_fresh = false;                          ///< forget what the folder holds
+    const std::atomic<bool>* is_stopped = nullptr;  ///< when it turns true, the run ends after the case under way
+    Progress* progress = nullptr;                   ///< counts finished repeats of cases, those found in the folder too
+};
+
+/// How many repeats of cases the study takes in all.
+std::int64_t run_count(const Study& study, const StudyOptions& options);
+
+/// Returns false when it was stopped before the end. Writes no pictures (draw.h). Throws InputError when the folder
+/// holds another run or cannot be written to, and WrongImage.
+bool run_study(const Study& study, const StudyOptions& options, const std::filesystem::path& folder,
+               const RunControl& control);
+
+}  // namespace raypool::studies

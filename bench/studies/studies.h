@@ -1,0 +1,12 @@
+/// The studies: each is defined in the file of its name, and listed in registry.cpp.
+#pragma once
+
+#include <memory>
+
+#include "bench/studies/study.h"
+
+namespace raypool::studies {
+
+std::unique_ptr<Study> schedules_study();
+
+}  // namespace raypool::studies

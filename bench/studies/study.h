@@ -1,0 +1,93 @@
+/// What a study is: cases to run, the table that they fill, and what the table says.
+///
+/// A study owns the question and nothing else: runner.h interleaves the repeats, checks the images, keeps the data and
+/// resumes an interrupted run. To add a study, derive from Study in a file of its own and list it in registry.cpp; its
+/// pictures are drawn by a module of the same name in scripts/plots/.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench/studies/table.h"
+
+namespace raypool::studies {
+
+/// What a user may set; 0 means the study's own choice.
+struct StudyOptions {
+    bool is_quick = false;  ///< under a minute, with smaller images and fewer repeats
+    std::string scene = "paper";
+    std::int64_t width = 0;
+    std::int64_t spp = 0;
+    std::int64_t depth = 0;
+    int threads = 0;  ///< the most threads that are run, or whose load is counted
+    int repeats = 0;
+    std::uint64_t seed = 0;
+};
+
+/// One thing that is run `repeats` times. The id is unique within the study, and stays the same from run to run, since
+/// it is how a resumed study knows what it has.
+struct Case {
+    std::string id;
+    std::string image;  ///< cases of one image must all have the same hash (column "hash"); empty: no image is made
+    int repeats = 1;
+    std::function<std::vector<Row>()> run;  ///< one repeat: rows of the study's columns. Seconds, not minutes
+};
+
+enum class Verdict : std::uint8_t { Holds, DoesNotHold, CannotTell };
+
+/// What the paper, or the project, claims, and what was found.
+struct Finding {
+    std::string source;  ///< "Figure 5", "Table 1" of the paper; empty for a question of ours
+    std::string claim;
+    std::string paper;  ///< its figures
+    std::string ours;
+    Verdict verdict = Verdict::CannotTell;
+    std::string why;  ///< always, where it cannot be told
+};
+
+/// Drawn by scripts/plots/<study>.py as <name>.svg and <name>.png.
+struct Picture {
+    std::string name;
+    std::string title;
+    std::string caption;  ///< what to see
+};
+
+struct TextTable {
+    std::string title;
+    std::vector<std::string> header;
+    std::vector<std::vector<std::string>> rows;
+};
+
+struct Summary {
+    std::vector<Finding> findings;
+    std::vector<Picture> pictures;
+    std::vector<TextTable> tables;
+    std::vector<std::string> notes;
+};
+
+class Study {
+  public:
+    Study() = default;
+    Study(const Study&) = delete;
+    Study& operator=(const Study&) = delete;
+    virtual ~Study() = default;
+
+    [[nodiscard]] virtual std::string name() const = 0;
+    /// What it answers, in one sentence that ends in a question mark.
+    [[nodiscard]] virtual std::string question() const = 0;
+    /// Behind "case" and "repeat", which every study has.
+    [[nodiscard]] virtual std::vector<Column> columns() const = 0;
+    /// Throws InputError for options that it cannot carry out.
+    [[nodiscard]] virtual std::vector<Case> cases(const StudyOptions& options) const = 0;
+    /// From all rows of all cases ("case", "repeat" and the study's columns).
+    [[nodiscard]] virtual Summary summarise(const Table& data, const StudyOptions& options) const = 0;
+};
+
+/// What the options ask for, or what the study would do by itself.
+inline std::int64_t choose(std::int64_t asked, bool is_quick, std::int64_t quick, std::int64_t full) {
+    return asked != 0 ? asked : is_quick ? quick : full;
+}
+
+}  // namespace raypool::studies

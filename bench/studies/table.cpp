@@ -1,0 +1,149 @@
+#include "bench/studies/table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace raypool::studies {
+
+namespace {
+
+std::string cell(const Value& value) {
+    if (value.is_null()) return "";
+    if (value.is_number_integer()) return fmt::format("{}", value.get<std::int64_t>());
+    if (value.is_number()) return fmt::format("{}", value.get<double>());
+    const auto& text = value.get_ref<const std::string&>();
+    if (!text.empty() && text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted(1, '"');
+    for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+    return quoted.append(1, '"');
+}
+
+/// The cells of one line, which starts at `text` and ends with '\n'; moves `text` behind it. Nothing if it has no end.
+std::optional<std::vector<std::string>> next_line(std::string_view& text) {
+    std::vector<std::string> cells(1);
+    bool is_quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (is_quoted) {
+            if (c != '"') {
+                cells.back() += c;
+            } else if (i + 1 < text.size() && text[i + 1] == '"') {
+                cells.back() += text[++i];
+            } else {
+                is_quoted = false;
+            }
+        } else if (c == '"') {
+            is_quoted = true;
+        } else if (c == ',') {
+            cells.emplace_back();
+        } else if (c == '\n') {
+            text.remove_prefix(i + 1);
+            return cells;
+        } else {
+            cells.back() += c;
+        }
+    }
+    return std::nullopt;
+}
+
+template <class T>
+std::optional<Value> number(const std::string& text) {
+    T value;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return Value(value);
+}
+
+std::optional<Value> parse(const std::string& text, ColumnType type) {
+    if (text.empty()) return Value(nullptr);
+    if (type == ColumnType::Text) return Value(text);
+    return type == ColumnType::Count ? number<std::int64_t>(text) : number<double>(text);
+}
+
+}  // namespace
+
+bool Table::has(std::string_view column) const {
+    return std::any_of(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == column; });
+}
+
+std::size_t Table::index(std::string_view column) const {
+    const auto found =
+        std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == column; });
+    RAYPOOL_CHECK(found != columns_.end(), "a study knows its columns");
+    return static_cast<std::size_t>(found - columns_.begin());
+}
+
+void Table::add(Row row) {
+    RAYPOOL_CHECK(row.size() == columns_.size(), "a row has a value for each column");
+    rows_.push_back(std::move(row));
+}
+
+Table Table::where(std::string_view column, const Value& value) const {
+    const std::size_t i = index(column);
+    Table found(columns_);
+    std::copy_if(rows_.begin(), rows_.end(), std::back_inserter(found.rows_),
+                 [&](const Row& row) { return row[i] == value; });
+    return found;
+}
+
+std::vector<double> Table::numbers(std::string_view column) const {
+    const std::size_t i = index(column);
+    std::vector<double> numbers;
+    for (const Row& row : rows_)
+        if (!row[i].is_null()) numbers.push_back(row[i].get<double>());
+    return numbers;
+}
+
+std::vector<Value> Table::distinct(std::string_view column) const {
+    const std::size_t i = index(column);
+    std::vector<Value> values;
+    for (const Row& row : rows_)
+        if (std::find(values.begin(), values.end(), row[i]) == values.end()) values.push_back(row[i]);
+    return values;
+}
+
+std::string csv_header(const std::vector<Column>& columns) {
+    Row names;
+    for (const Column& column : columns) names.emplace_back(column.name);
+    return csv_lines({names});
+}
+
+std::string csv_lines(const std::vector<Row>& rows) {
+    std::string text;
+    for (const Row& row : rows) {
+        for (const Value& value : row) text.append(cell(value)).append(1, ',');
+        text.back() = '\n';
+    }
+    return text;
+}
+
+Table read_csv(const std::filesystem::path& path, std::vector<Column> columns) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw InputError(fmt::format("{}: cannot read", path.string()));
+    const std::string content((std::istreambuf_iterator<char>(file)), {});
+    std::string_view text(content);
+    const std::string header = csv_header(columns);
+    if (!text.starts_with(header))
+        throw InputError(fmt::format("{}: line 1: the columns are not those of this study", path.string()));
+    text.remove_prefix(header.size());
+
+    Table table(std::move(columns));
+    for (std::size_t line = 2; auto cells = next_line(text); ++line) {
+        Row row;
+        for (std::size_t i = 0; i < cells->size() && i < table.columns().size(); ++i)
+            if (auto value = parse((*cells)[i], table.columns()[i].type)) row.push_back(std::move(*value));
+        if (row.size() != table.columns().size() || cells->size() != row.size())
+            throw InputError(fmt::format("{}: line {}: does not fit the columns", path.string(), line));
+        table.add(std::move(row));
+    }
+    return table;
+}
+
+}  // namespace raypool::studies

@@ -1,0 +1,62 @@
+/// The table of a study: rows of typed columns, read from and written as CSV.
+///
+/// CSV after RFC 4180: a header of column names, texts quoted where they must be. Numbers are written so that reading
+/// them gives the same number; an empty cell is a value that does not exist.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace raypool::studies {
+
+enum class ColumnType : std::uint8_t { Text, Count, Real };
+
+struct Column {
+    std::string name;
+    ColumnType type;
+    std::string what;  ///< meaning and unit, for whoever reads the data
+};
+
+/// A text, a number or null, as the columns say.
+using Value = nlohmann::json;
+using Row = std::vector<Value>;
+
+class Table {
+  public:
+    explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
+
+    [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+    [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
+    [[nodiscard]] bool is_empty() const { return rows_.empty(); }
+    /// A column that does not exist is a bug.
+    [[nodiscard]] std::size_t index(std::string_view column) const;
+    [[nodiscard]] bool has(std::string_view column) const;
+
+    /// A row of a wrong length is a bug.
+    void add(Row row);
+
+    /// The rows in which `column` is `value`.
+    [[nodiscard]] Table where(std::string_view column, const Value& value) const;
+    /// The values of a column, without those that do not exist.
+    [[nodiscard]] std::vector<double> numbers(std::string_view column) const;
+    /// The different values of a column, in the order of their first rows.
+    [[nodiscard]] std::vector<Value> distinct(std::string_view column) const;
+
+  private:
+    std::vector<Column> columns_;
+    std::vector<Row> rows_;
+};
+
+std::string csv_header(const std::vector<Column>& columns);
+/// Rows as lines.
+std::string csv_lines(const std::vector<Row>& rows);
+
+/// Reads what the two functions above wrote. A last line without its end, as a killed process leaves it, is left out.
+/// Throws InputError, with file and line, for anything else that does not fit the columns.
+Table read_csv(const std::filesystem::path& path, std::vector<Column> columns);
+
+}  // namespace raypool::studies

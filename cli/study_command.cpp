@@ -1,0 +1,103 @@
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "bench/studies/draw.h"
+#include "bench/studies/registry.h"
+#include "bench/studies/runner.h"
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "cli/progress_bar.h"
+#include "core/error.h"
+
+namespace raypool::cli {
+
+namespace {
+
+struct StudyCommand {
+    std::string name;
+    studies::StudyOptions options;
+    std::string seed = "0";
+    std::string output;
+    bool is_fresh = false;
+    bool is_quiet = false;
+};
+
+std::atomic<bool> is_stopped = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+/// Ctrl-C ends a study after the case under way; a second one at once.
+void stop(int signal) {
+    is_stopped = true;
+    std::signal(signal, SIG_DFL);
+}
+
+void list_studies() {
+    for (const auto& study : studies::all_studies()) fmt::print("{:<12} {}\n", study->name(), study->question());
+}
+
+int run(const studies::Study& study, const StudyCommand& command) {
+    const std::filesystem::path folder =
+        command.output.empty() ? std::filesystem::path("out") / study.name() : std::filesystem::path(command.output);
+    Progress progress;
+    bool is_complete = false;
+    {
+        const ProgressBar bar(progress, studies::run_count(study, command.options), {"runs/s", 1}, command.is_quiet);
+        is_complete = studies::run_study(study, command.options, folder, {command.is_fresh, &is_stopped, &progress});
+    }
+    if (!is_complete) {
+        fmt::print(stderr, "raypool: stopped after {} runs, all of them kept; the same command goes on from there\n",
+                   progress.paths.load());
+        return 128 + SIGINT;
+    }
+    studies::draw_pictures(folder);
+    if (!command.is_quiet) fmt::print("{}\n", (folder / "summary.md").string());
+    return 0;
+}
+
+int study(StudyCommand& command) {
+#ifndef NDEBUG
+    throw InputError("study: a debug build does not time; build in Release");
+#endif
+    if (command.name.empty()) {
+        list_studies();
+        return 0;
+    }
+    command.options.seed = parse_seed(command.seed);
+    std::signal(SIGINT, stop);
+    std::signal(SIGTERM, stop);
+    return run(*studies::make_study(command.name), command);
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& app, int& status) {
+    auto command = std::make_shared<StudyCommand>();
+    studies::StudyOptions& options = command->options;
+    CLI::App* sub = app.add_subcommand("study", "Run an experiment: data, pictures and what they say, in a folder");
+    sub->add_option("name", command->name, "Which; without it, all are listed");
+    sub->add_flag("--quick", options.is_quick, "Small images and few repeats: under a minute");
+    sub->add_option("--out", command->output, "Folder (default: out/NAME); an interrupted run in it goes on")
+        ->check(check_file_name);
+    sub->add_flag("--fresh", command->is_fresh, "Begin anew, whatever the folder holds");
+    sub->add_option("--scene", options.scene, "Scene file, or the name of a built-in scene (default: paper)");
+    const auto at_least_one = [](std::int64_t most) { return CLI::Range(std::int64_t{1}, most); };
+    sub->add_option("--width", options.width, "Image width (default: the study's)")->check(at_least_one(65536));
+    sub->add_option("--spp", options.spp, "Samples per pixel (default: the study's)")
+        ->check(at_least_one(std::numeric_limits<std::int32_t>::max()));
+    sub->add_option("--depth", options.depth, "Most segments of a path (default: the study's)")
+        ->check(at_least_one(path_step::kMostBounces));
+    sub->add_option("--threads", options.threads, "Most threads (default: the study's)")->check(CLI::Range(1, 4096));
+    sub->add_option("--repeats", options.repeats, "Interleaved runs of each case (default: the study's)")
+        ->check(CLI::Range(1, 1000));
+    sub->add_option("--seed", command->seed, "Seed of all random numbers (default: 0)");
+    sub->add_flag("--quiet", command->is_quiet, "Print nothing");
+    sub->callback([command, &status] { status = study(*command); });
+}
+
+}  // namespace raypool::cli
