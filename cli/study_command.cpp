@@ -9,6 +9,7 @@
 
 #include "bench/studies/draw.h"
 #include "bench/studies/registry.h"
+#include "bench/studies/reproduce.h"
 #include "bench/studies/runner.h"
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -18,6 +19,10 @@
 namespace raypool::cli {
 
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kReproduce = "reproduce";
 
 struct StudyCommand {
     std::string name;
@@ -39,11 +44,11 @@ void stop(int signal) {
 
 void list_studies() {
     for (const auto& study : studies::all_studies()) fmt::print("{:<12} {}\n", study->name(), study->question());
+    fmt::print("{:<12} All of the paper's experiments, and a page that holds its figures against ours.\n", kReproduce);
 }
 
-int run(const studies::Study& study, const StudyCommand& command) {
-    const std::filesystem::path folder =
-        command.output.empty() ? std::filesystem::path("out") / study.name() : std::filesystem::path(command.output);
+/// One study, in `folder`.
+int run(const studies::Study& study, const fs::path& folder, const StudyCommand& command) {
     Progress progress;
     bool is_complete = false;
     {
@@ -71,7 +76,15 @@ int study(StudyCommand& command) {
     command.options.seed = parse_seed(command.seed);
     std::signal(SIGINT, stop);
     std::signal(SIGTERM, stop);
-    return run(*studies::make_study(command.name), command);
+    const fs::path folder = command.output.empty() ? fs::path("out") / command.name : fs::path(command.output);
+    if (command.name != kReproduce) return run(*studies::make_study(command.name), folder, command);
+    for (const std::string& name : studies::paper_studies()) {
+        const int status = run(*studies::make_study(name), folder / name, command);
+        if (status != 0) return status;
+    }
+    studies::write_reproduction(folder);
+    if (!command.is_quiet) fmt::print("{}\n", (folder / "summary.md").string());
+    return 0;
 }
 
 }  // namespace

@@ -79,12 +79,10 @@ std::string summary_page(const json& run) {
     for (const char* key : {"width", "spp", "depth", "threads", "repeats", "seed"})
         if (options.at(key) != 0) command += fmt::format(" --{} {}", key, options.at(key).dump());
     if (text_of(options, "scene") != "paper") command += " --scene " + text_of(options, "scene");
-    page += fmt::format("\n{}. Finished {}", machine_line(run.at("environment")), text_of(run, "finished"));
-    if (run.contains("stolen") && run.at("stolen").is_number())
-        page += fmt::format("; the host took {:.1f} % of the processor time for others",
-                            100 * run.at("stolen").get<double>());
-    page +=
-        fmt::format(".\nFlags and OpenMP variables are in run.json, every row in data.csv. To repeat: `{}`\n", command);
+    page += fmt::format("\n{}. Finished {}; the host took {:.1f} % of the processor time for others.\n",
+                        machine_line(run.at("environment")), text_of(run, "finished"),
+                        100 * run.at("stolen").get<double>());
+    page += fmt::format("Flags and OpenMP variables are in run.json, every row in data.csv. To repeat: `{}`\n", command);
     return page;
 }
 

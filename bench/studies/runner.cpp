@@ -179,17 +179,18 @@ bool run_study(const Study& study, const StudyOptions& options, const fs::path& 
     fs::create_directories(folder, error);
     if (error) throw InputError(fmt::format("{}: cannot make the folder: {}", folder.string(), error.message()));
     Data data(folder, columns, cases);
-    json starts = json::array();
     if (!control.is_fresh && fs::exists(folder / "run.json")) {
         const json found = read_run(folder);
         check_same_run(found, run, folder);
-        starts = found.value("started", starts);
+        for (const char* key : {"started", "finished", "stolen"})
+            if (found.contains(key)) run[key] = found[key];
         data.load();
     }
-    const bool is_complete = data.run_count() == run_count(study, options);
-    if (!is_complete) starts.push_back(now());
-    run["started"] = starts;
-    if (!is_complete) write_text(folder / "run.json", run.dump(2) + "\n");
+    const bool was_complete = data.run_count() == run_count(study, options);
+    if (!was_complete) {
+        run["started"].push_back(now());
+        write_text(folder / "run.json", run.dump(2) + "\n");
+    }
     data.open();
     if (control.progress != nullptr) control.progress->paths = data.run_count();
 
@@ -208,12 +209,12 @@ bool run_study(const Study& study, const StudyOptions& options, const fs::path& 
     }
 
     // What came out.
-    if (is_complete) run["stolen"] = read_run(folder).value("stolen", json());
-    const CpuTime after = cpu_time();
-    if (!is_complete && after.all > before.all)
-        run["stolen"] = (after.stolen - before.stolen) / (after.all - before.all);
+    if (!was_complete) {
+        const CpuTime after = cpu_time();
+        run["finished"] = now();
+        run["stolen"] = (after.stolen - before.stolen) / std::max(1.0, after.all - before.all);
+    }
     const Summary summary = study.summarise(data.table(), options);
-    run["finished"] = is_complete ? read_run(folder).value("finished", json(now())) : json(now());
     add_summary(run, summary);
     write_text(folder / "summary.md", summary_page(run));
     write_text(folder / "run.json", run.dump(2) + "\n");

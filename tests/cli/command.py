@@ -70,11 +70,12 @@ class CommandTest(unittest.TestCase):
     def run_command(self, *arguments, environment=None, **keywords):
         """The finished process. OpenMP is told nothing but what the test says."""
         clean = {name: value for name, value in os.environ.items() if not name.startswith(("OMP_", "GOMP_", "KMP_"))}
+        keywords.setdefault("timeout", 60)
         keywords.setdefault("stdout", subprocess.PIPE)
         keywords.setdefault("stderr", subprocess.PIPE)
         return subprocess.run(
             [self.command, *map(str, arguments)], cwd=self.folder, env={**clean, **(environment or {})},
-            stdin=subprocess.DEVNULL, text=True, errors="backslashreplace", timeout=60, check=False, **keywords)
+            stdin=subprocess.DEVNULL, text=True, errors="backslashreplace", check=False, **keywords)
 
     def run_well(self, *arguments, **keywords):
         """The finished process, which must have ended well and said nothing on stderr."""

@@ -1,0 +1,88 @@
+"""`raypool study`: every study runs on tiny inputs, leaves data, summary and pictures, and survives Ctrl-C."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import time
+
+from command import CommandTest, main
+
+TINY = ["--quick", "--width", "32", "--spp", "2", "--repeats", "1"]
+
+
+def rows_of(folder):
+    with open(folder / "data.csv", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class StudyTest(CommandTest):
+    def names(self):
+        listing = self.run_well("study").stdout
+        return [line.split()[0] for line in listing.splitlines()]
+
+    def check_folder(self, folder):
+        run = json.loads((folder / "run.json").read_text())
+        self.assertGreater(len(rows_of(folder)), 0)
+        for part in ("commit", "compiler", "flags", "cpu"):
+            self.assertIn(part, run["environment"])
+        summary = (folder / "summary.md").read_text()
+        self.assertNotIn("nan", summary.lower())
+        self.assertGreater(len(run["pictures"]), 0)
+        for picture in run["pictures"]:
+            self.assertIn(f"{picture['name']}.png", summary)
+            self.assertGreater(len(picture["caption"]), 40)
+            self.assertTrue((folder / f"{picture['name']}.svg").read_text().startswith("<?xml"))
+            self.assertTrue((folder / f"{picture['name']}.png").read_bytes().startswith(b"\x89PNG"))
+        return run
+
+    def test_every_study_leaves_data_summary_and_pictures(self):
+        names = self.names()
+        self.assertIn("schedules", names)
+        for name in names:
+            with self.subTest(name):
+                self.run_well("study", name, *TINY, "--threads", "2", "--quiet", timeout=300)
+                if name == "reproduce":
+                    page = (self.folder / "out/reproduce/summary.md").read_text()
+                    for item in ("Table 1", "Table 2", "Figure 5", "Figure 11", "CPU against GPU"):
+                        self.assertIn(item, page)
+                    self.assertRegex(page, r"\*\*(holds|does not hold|cannot be told here)")
+                else:
+                    self.check_folder(self.folder / "out" / name)
+
+    def test_ctrl_c_loses_no_finished_row_and_repeats_none(self):
+        arguments = ["study", "schedules", "--quick", "--width", "64", "--spp", "16", "--repeats", "5"]
+        environment = {key: value for key, value in os.environ.items() if not key.startswith("OMP_")}
+        process = subprocess.Popen([self.command, *arguments], cwd=self.folder, env=environment, text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        data = self.folder / "out/schedules/data.csv"
+        while process.poll() is None and not (data.exists() and len(rows_of(data.parent)) >= 3):
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, said)
+        self.assertIn("goes on from there", said)
+        before = rows_of(data.parent)
+        self.assertGreaterEqual(len(before), 3)
+
+        self.run_well(*arguments, "--quiet")
+        after = rows_of(data.parent)
+        self.assertEqual(after[:len(before)], before)
+        keys = [(row["case"], row["repeat"]) for row in after]
+        self.assertEqual(len(keys), len(set(keys)))
+        plan = json.loads((data.parent / "run.json").read_text())["plan"]
+        self.assertEqual(len(keys), sum(case["repeats"] for case in plan))
+
+    def test_another_run_in_the_folder_is_refused(self):
+        self.run_well("study", "schedules", *TINY, "--quiet")
+        self.assert_refused("study", "schedules", *TINY, "--seed", "1", named=["out/schedules", "options", "--fresh"])
+
+    def test_bad_input_is_refused(self):
+        self.assert_refused("study", "nothing", named=["nothing", "schedules"])
+        self.assert_refused("study", "schedules", "--scene", "absent.json", named="absent.json")
+        self.assert_refused("study", "schedules", "--width", "0", named="--width")
+
+
+if __name__ == "__main__":
+    main()

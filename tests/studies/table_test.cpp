@@ -1,0 +1,71 @@
+/// The table of a study: what is written is what is read, and what was cut off is not.
+#include "bench/studies/table.h"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/core/scratch_folder.h"
+
+namespace raypool::studies {
+namespace {
+
+const std::vector<Column> kColumns{
+    {"name", ColumnType::Text, ""}, {"count", ColumnType::Count, ""}, {"seconds", ColumnType::Real, ""}};
+
+Table read_back(const std::string& text) {
+    const ScratchFolder folder;
+    set_file_text(folder / "data.csv", text);
+    return read_csv(folder / "data.csv", kColumns);
+}
+
+TEST(StudyTable, ReadsWhatItWrote) {
+    const std::vector<Row> rows{{"static,1", 3, 0.1},
+                                {"says \"no\"\nand goes on", -7, std::numeric_limits<double>::denorm_min()},
+                                {"1e10", std::numeric_limits<std::int64_t>::max(), 1.0 / 3},
+                                {"", nullptr, nullptr}};
+    const Table table = read_back(csv_header(kColumns) + csv_lines(rows));
+    ASSERT_EQ(table.rows().size(), rows.size());
+    for (std::size_t i = 0; i + 1 < rows.size(); ++i) EXPECT_EQ(table.rows()[i], rows[i]);
+    EXPECT_TRUE(table.rows().back()[1].is_null());
+    EXPECT_TRUE(table.rows()[2][0].is_string());  // a hash may look like a number
+}
+
+TEST(StudyTable, LeavesOutALastLineThatWasCutOff) {
+    const std::string lines = csv_lines({{"a", 1, 0.5}, {"b", 2, 0.25}});
+    for (std::size_t length = lines.find('\n') + 1; length < lines.size(); ++length) {
+        const Table table = read_back(csv_header(kColumns) + lines.substr(0, length));
+        EXPECT_EQ(table.rows().size(), 1U) << length;
+    }
+}
+
+TEST(StudyTable, RefusesWhatDoesNotFitNamingTheLine) {
+    const auto refusal = [](const std::string& text) -> std::string {
+        try {
+            read_back(text);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "accepted";
+    };
+    EXPECT_THAT(refusal("name,count\n"), testing::HasSubstr("line 1"));
+    EXPECT_THAT(refusal(csv_header(kColumns) + "a,1,2\na,x,2\n"), testing::HasSubstr("line 3"));
+    EXPECT_THAT(refusal(csv_header(kColumns) + "a,1\n"), testing::HasSubstr("line 2"));
+    EXPECT_THAT(refusal(csv_header(kColumns) + "a,1,2,3\n"), testing::HasSubstr("line 2"));
+}
+
+TEST(StudyTable, SelectsRowsAndValues) {
+    Table table(kColumns);
+    table.add({"a", 1, 0.5});
+    table.add({"b", 1, 0.25});
+    table.add({"a", 2, nullptr});
+    EXPECT_EQ(table.where("name", "a").rows().size(), 2U);
+    EXPECT_EQ(table.where("count", 1).numbers("seconds"), (std::vector<double>{0.5, 0.25}));
+    EXPECT_EQ(table.numbers("seconds").size(), 2U);
+    EXPECT_EQ(table.distinct("name"), (std::vector<Value>{"a", "b"}));
+}
+
+}  // namespace
+}  // namespace raypool::studies
