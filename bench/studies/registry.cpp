@@ -11,6 +11,8 @@ namespace raypool::studies {
 std::vector<std::unique_ptr<Study>> all_studies() {
     std::vector<std::unique_ptr<Study>> studies;
     studies.push_back(schedules_study());
+    studies.push_back(needs_study());
+    studies.push_back(depth_study());
     return studies;
 }
 

@@ -122,7 +122,8 @@ class Data {
   private:
     void keep(const Row& row) {
         const auto id = row[0].get<std::string>();
-        if (const std::string& image = image_[id]; !image.empty()) {
+        const std::string& image = image_[id];
+        if (!image.empty() && !row[table_.index("hash")].is_null()) {
             const auto hash = row[table_.index("hash")].get<std::string>();
             const auto [expected, is_first] = hashes_.try_emplace(image, hash);
             if (!is_first && expected->second != hash)

@@ -7,6 +7,8 @@
 
 namespace raypool::studies {
 
+std::unique_ptr<Study> depth_study();
+std::unique_ptr<Study> needs_study();
 std::unique_ptr<Study> schedules_study();
 
 }  // namespace raypool::studies

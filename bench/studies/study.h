@@ -30,7 +30,8 @@ struct StudyOptions {
 /// it is how a resumed study knows what it has.
 struct Case {
     std::string id;
-    std::string image;  ///< cases of one image must all have the same hash (column "hash"); empty: no image is made
+    std::string image;  ///< cases of one image must all have the same hash (column "hash", empty where an engine
+                        ///< refused to render); empty: no image is made
     int repeats = 1;
     std::function<std::vector<Row>()> run;  ///< one repeat: rows of the study's columns. Seconds, not minutes
 };

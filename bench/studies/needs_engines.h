@@ -1,0 +1,55 @@
+/// Engines whose kernels are compiled for a set of features of choice, whatever the scene needs: study `needs`.
+///
+/// The engines of the project are compiled for three sets (kCompiledNeeds); here are those with one feature each. They
+/// make the image of any scene that lacks what they lack.
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/studies/renders.h"
+#include "core/needs.h"
+
+namespace raypool::studies {
+
+/// Fuzz is a property of metal, so no scene has it alone; and code that has it alone is the code that has nothing,
+/// compiled again and put at another place. That is the control: what the place of the code makes of the time.
+inline constexpr const char* kControl = "control";
+
+struct FeatureSet {
+    const char* name;
+    SceneNeeds needs;
+};
+inline constexpr auto kFeatureSets = [] {
+    std::array<FeatureSet, kSceneFeatures.size() + 1> sets{};
+    for (std::size_t i = 0; i < kSceneFeatures.size(); ++i) {
+        // Every member is written, the false ones too: g++ 12 leaves those that were not out of the symbols of the
+        // templates, so that the functions of different sets get one name, and the linker keeps one of them.
+        sets[i] = {kSceneFeatures[i].name,
+                   {i == 0, i == 1, i == 2, i == 3 || i == 4, i == 4, i == 5, i == 6, i == 7, i == 8}};
+    }
+    sets.back() = {kControl, {.fuzz = true}};
+    return sets;
+}();
+
+using RenderFunction = RenderReport (*)(const CompiledScene<float>&, const RenderSettings&, Framebuffer&);
+
+/// By kFeatureSets. The pool's are in two files, which compile slowly.
+RenderFunction iterative_render(std::size_t set);
+RenderFunction pool_render_front(std::size_t set);  ///< of the first half of the sets
+RenderFunction pool_render_back(std::size_t set);   ///< of the second half; `set` counts on from the first
+inline constexpr std::size_t kFrontSets = kFeatureSets.size() / 2;
+
+/// The function of each set from `first` on, `count` of them, by Render<needs>::run.
+template <template <SceneNeeds> class Render, std::size_t first, std::size_t count>
+RenderFunction render_of_set(std::size_t set) {
+    constexpr auto kFunctions = []<std::size_t... i>(std::index_sequence<i...>) {
+        return std::array<RenderFunction, count>{&Render<kFeatureSets[first + i].needs>::run...};
+    }
+    (std::make_index_sequence<count>());
+    return kFunctions[set - first];
+}
+
+}  // namespace raypool::studies

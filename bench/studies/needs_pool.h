@@ -1,0 +1,19 @@
+/// The fused pool, compiled for a set of features: what needs_pool_front.cpp and needs_pool_back.cpp instantiate.
+#pragma once
+
+#include "bench/studies/needs_engines.h"
+#include "wavefront/render.h"
+
+namespace raypool::studies {
+
+template <SceneNeeds needs>
+struct FusedPool {
+    static RenderReport run(const CompiledScene<float>& scene, const RenderSettings& settings,
+                            Framebuffer& framebuffer) {
+        using Real = Wide<float, stdx::native_simd<float>::size()>;
+        return wavefront::render<needs, Real, NoWorkCount, Splitting::Off>(scene, settings, wavefront::PoolSettings{},
+                                                                           framebuffer);
+    }
+};
+
+}  // namespace raypool::studies
