@@ -22,7 +22,8 @@ const Words kIntersection{"single", "stream"};
 const Words kCamera{"staged", "fused"};
 const Words kSort{"none", "material"};
 const Words kAppend{"in-place", "atomic", "prefix-sum"};
-const Words kAccumulator{"owned", "atomic", "private", "atomic-float", "atomic-double"};
+const Words kAccumulator{"owned",         "atomic",       "private",      "owned-planar",
+                         "atomic-planar", "atomic-float", "atomic-double"};
 
 /// Sets `value` to the enumerator that `word` names, if it names one.
 template <class Enum>

@@ -296,18 +296,20 @@ INSTANTIATE_TEST_SUITE_P(Depths, Splitting, testing::Values(1, 2, 7));
 
 TEST(OwnedAccumulator, IsRefusedWithASharedPoolBeforeAnythingIsAdded) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 8));
-    PoolSettings pool = shared_pool();
-    pool.accumulator = Accumulator::OwnedInt64;
-    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(1, scene.max_radiance));
-    const std::string before = framebuffer.hash();
-    try {
-        WavefrontEngine(pool).render(scene, settings_of(1, 50), framebuffer);
-        FAIL() << "rendered";
-    } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("--accumulator"), std::string::npos) << error.what();
-        EXPECT_NE(std::string(error.what()).find("--pool-scope"), std::string::npos) << error.what();
+    for (const Accumulator accumulator : {Accumulator::OwnedInt64, Accumulator::OwnedPlanarInt64}) {
+        PoolSettings pool = shared_pool();
+        pool.accumulator = accumulator;
+        Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(1, scene.max_radiance));
+        const std::string before = framebuffer.hash();
+        try {
+            WavefrontEngine(pool).render(scene, settings_of(1, 50), framebuffer);
+            FAIL() << "rendered";
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("--accumulator"), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find("--pool-scope"), std::string::npos) << error.what();
+        }
+        EXPECT_EQ(framebuffer.hash(), before);
     }
-    EXPECT_EQ(framebuffer.hash(), before);
 }
 
 TEST(RoundedAccumulators, MakeAnImageThatIsOnlyClose) {
