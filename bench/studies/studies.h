@@ -7,6 +7,9 @@
 
 namespace raypool::studies {
 
+std::unique_ptr<Study> framebuffer_study();
+std::unique_ptr<Study> ladder_study();
+std::unique_ptr<Study> pool_study();
 std::unique_ptr<Study> schedules_study();
 
 }  // namespace raypool::studies
