@@ -1,7 +1,5 @@
 // Sums of a pixel side by side, or in three planes: the paper's Figure 11, in time and in cache misses.
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <optional>
 #include <string_view>
@@ -9,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "bench/studies/cache_counts.h"
+#include "bench/studies/framebuffer_summary.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
 #include "core/settings_text.h"
 #include "wavefront/engine.h"
@@ -23,11 +21,6 @@ namespace {
 using wavefront::Accumulator;
 using wavefront::PoolSettings;
 
-constexpr const char* kInterleaved = "interleaved";
-constexpr const char* kPlanar = "planar";
-constexpr const char* kThread = "a pool for each thread";
-constexpr const char* kShared = "the paper's pool, shared";
-
 /// A pool whose accumulator has both layouts.
 struct Pair {
     const char* name;
@@ -35,8 +28,8 @@ struct Pair {
     Accumulator planar;
 };
 std::vector<Pair> pairs() {
-    return {{kThread, rung_settings("fused", 1), Accumulator::OwnedPlanarInt64},
-            {kShared, rung_settings("shared-stream", 1), Accumulator::AtomicPlanarInt64}};
+    return {{"a pool for each thread", rung_settings("fused", 1), Accumulator::OwnedPlanarInt64},
+            {kSharedPool, rung_settings("shared-stream", 1), Accumulator::AtomicPlanarInt64}};
 }
 PoolSettings in_layout(const Pair& pair, const char* layout) {
     PoolSettings pool = pair.pool;
@@ -215,22 +208,7 @@ class FramebufferLayout : public Study {
     }
 
     [[nodiscard]] Summary summarise(const Table& data, const StudyOptions&) const override {
-        Summary summary;
-        const Table clock = data.where("source", "clock");
-        std::vector<double> gains;  // of interleaving, of the shared pool with all threads
-        summary.tables.push_back(times(clock, gains));
-        const Table counted = misses_of(data);
-        if (!counted.is_empty()) summary.tables.push_back(misses(counted));
-        summary.findings.push_back(about_misses(counted));
-        summary.findings.push_back(about_time(spread(gains), clock.distinct("threads").back().get<int>()));
-        summary.pictures.push_back(
-            {"framebuffer", "Three sums side by side, or three planes",
-             "Left: time of a thread for each sample, median with lowest and highest run, taken in turns. Right: cache "
-             "misses of one thread. What to see: bars of a pair are of one length, so the layout does not matter: "
-             "samples "
-             "of a pixel end close together in time, and what the pools read and write are records, not pixels."});
-        add_notes(summary, counted);
-        return summary;
+        return summarise_framebuffer(data);
     }
 
   private:
@@ -239,128 +217,6 @@ class FramebufferLayout : public Study {
 
     static bool has_hardware_counters() {
         return count_by_hardware([] {}).has_value();
-    }
-
-    /// The rows with counts of the whole render, from whichever source there is.
-    static Table misses_of(const Table& data) {
-        const Table hardware = data.where("source", "hardware counters");
-        return hardware.is_empty() ? data.where("source", "cachegrind") : hardware;
-    }
-
-    static TextTable times(const Table& clock, std::vector<double>& gains) {
-        TextTable table{
-            "Time",
-            {"pool", "width", "framebuffer", "threads", "interleaved, s", "planar, s", "planar over interleaved"},
-            {}};
-        const Value most = clock.distinct("threads").back();
-        for (const Value& engine : clock.distinct("engine"))
-            for (const Value& width : clock.distinct("width"))
-                for (const Value& threads : clock.distinct("threads")) {
-                    const Table here = clock.where("engine", engine).where("width", width).where("threads", threads);
-                    const std::vector<double> interleaved = here.where("layout", kInterleaved).numbers("seconds");
-                    const std::vector<double> planar = here.where("layout", kPlanar).numbers("seconds");
-                    const std::vector<double> gain = ratios(planar, interleaved);
-                    if (engine == kShared && threads == most) gains.insert(gains.end(), gain.begin(), gain.end());
-                    table.rows.push_back({engine.get<std::string>(), width.dump(), size_text(here), threads.dump(),
-                                          to_text(spread(interleaved), 3), to_text(spread(planar), 3),
-                                          to_text(spread(gain))});
-                }
-        return table;
-    }
-    static std::string size_text(const Table& rows) {
-        return fmt::format("{:.0f} KiB", rows.numbers("framebuffer_bytes").front() / 1024);
-    }
-
-    /// Of accesses to data, in percent: misses of the first-level cache.
-    static double miss_rate(const Table& rows) {
-        const auto sum = [&](const char* column) {
-            const std::vector<double> values = rows.numbers(column);
-            return values.empty() ? 0 : median(values);
-        };
-        const bool has_writes = !rows.numbers("d1_write_misses").empty();  // which not every processor counts
-        const double accesses = sum("data_reads") + (has_writes ? sum("data_writes") : 0);
-        return accesses == 0 ? 0 : 100 * (sum("d1_read_misses") + sum("d1_write_misses")) / accesses;
-    }
-    static std::string per_sample(const Table& rows, const char* column) {
-        const std::vector<double> values = rows.numbers(column);
-        return values.empty() ? "" : fmt::format("{:.3f}", median(values) / rows.numbers("paths").front());
-    }
-
-    static TextTable misses(const Table& counted) {
-        TextTable table{
-            fmt::format("Cache misses of one thread, by {}", counted.distinct("source").front().get<std::string>()),
-            {"pool", "part", "width", "framebuffer", "layout", "first-level misses",
-             "first-level write misses, a sample", "last-level read misses, a sample",
-             "last-level write misses, a sample"},
-            {}};
-        for (const Value& engine : counted.distinct("engine"))
-            for (const Value& part : counted.distinct("part"))
-                for (const Value& width : counted.distinct("width"))
-                    for (const Value& layout : counted.distinct("layout")) {
-                        const Table rows = counted.where("engine", engine)
-                                               .where("part", part)
-                                               .where("width", width)
-                                               .where("layout", layout);
-                        if (rows.is_empty()) continue;
-                        table.rows.push_back({engine.get<std::string>(), part.get<std::string>(), width.dump(),
-                                              size_text(rows), layout.get<std::string>(),
-                                              fmt::format("{:.2f} %", miss_rate(rows)),
-                                              per_sample(rows, "d1_write_misses"), per_sample(rows, "ll_read_misses"),
-                                              per_sample(rows, "ll_write_misses")});
-                    }
-        return table;
-    }
-
-    /// The paper's claim, held against the shared pool and the larger image.
-    static Finding about_misses(const Table& counted) {
-        constexpr double kLeastGain = 0.95;  // the paper's is 8/11; a twentieth less is not what it speaks of
-        Finding finding{"Figure 11",         "an interleaved framebuffer has fewer cache misses than three planes",
-                        "11 % to 8 %",       "",
-                        Verdict::CannotTell, ""};
-        if (counted.is_empty()) {
-            finding.why = "no hardware counters, and " + cachegrind_command().why;
-            return finding;
-        }
-        const std::vector<double> widths = counted.numbers("width");
-        const Table rows =
-            counted.where("engine", kShared)
-                .where("part", "render")
-                .where("width", static_cast<std::int64_t>(*std::max_element(widths.begin(), widths.end())));
-        const double planar = miss_rate(rows.where("layout", kPlanar));
-        const double interleaved = miss_rate(rows.where("layout", kInterleaved));
-        finding.ours = fmt::format("{:.2f} % to {:.2f} % of accesses to data, first-level cache, by {}", planar,
-                                   interleaved, counted.distinct("source").front().get<std::string>());
-        finding.verdict = interleaved < kLeastGain * planar ? Verdict::Holds : Verdict::DoesNotHold;
-        if (finding.verdict == Verdict::DoesNotHold) finding.why = "the difference is below a twentieth";
-        return finding;
-    }
-
-    static Finding about_time(const Spread& gain, int threads) {
-        constexpr double kNothing = 1.02;
-        const bool is_gain = gain.low > 1 && gain.median >= kNothing;
-        return {"Figure 11",
-                "an interleaved framebuffer is no gain in time",
-                "none",
-                fmt::format("planes take {} times as long, the paper's pool, {} thread{}", to_text(gain, 3), threads,
-                            threads == 1 ? "" : "s"),
-                is_gain ? Verdict::DoesNotHold : Verdict::Holds,
-                is_gain ? "" : "no gain that stands out of the spread of the runs"};
-    }
-
-    static void add_notes(Summary& summary, const Table& counted) {
-        const long second_level = sysconf(_SC_LEVEL2_CACHE_SIZE);
-        if (second_level > 0)
-            summary.notes.push_back(fmt::format("Second-level cache here: {} KiB.", second_level / 1024));
-        summary.notes.push_back(
-            "Time: the seconds of the parallel region; putting planes together at the end of a render is not in them.");
-        if (counted.is_empty()) return;
-        if (counted.distinct("source").front() == "cachegrind")
-            summary.notes.push_back(fmt::format(
-                "Misses: no hardware counters here, so cachegrind, which simulates caches (size, ways, line: {} and "
-                "{}) "
-                "and counts the same every time; `render` is what the engine does, without putting planes together; "
-                "`accumulate` is what of that adds to the framebuffer.",
-                kSimulatedD1, kSimulatedLl));
     }
 };
 

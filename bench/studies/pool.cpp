@@ -5,11 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "bench/studies/crossover.h"
+#include "bench/studies/pool_summary.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
-#include "bench/studies/verdict.h"
 #include "core/settings_text.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
@@ -24,10 +22,6 @@ using wavefront::PoolSettings;
 using wavefront::Refill;
 using wavefront::Sort;
 
-constexpr const char* kRecursive = "recursive";
-constexpr const char* kPaper = "the paper's pool";
-constexpr const char* kFastest = "thread, regenerate, fused";
-
 /// A pool whose capacity is left open: a line of the picture.
 struct Line {
     std::string name;
@@ -38,13 +32,13 @@ struct Line {
 std::vector<Line> lines() {
     std::vector<Line> lines;
     PoolSettings wide = rung_settings("shared-stream", 1);
-    lines.push_back({kPaper, rung_settings("shared", 1)});
-    lines.push_back({"shared, drain", wide});
+    lines.push_back({kPaperPool, rung_settings("shared", 1)});
+    lines.push_back({kWidePool, wide});
     wide.refill = Refill::Regenerate;
     lines.push_back({"shared, regenerate", wide});
     lines.push_back({"thread, drain", rung_settings("thread-small", 1)});
     lines.push_back({"thread, regenerate", rung_settings("regenerate", 1)});
-    lines.push_back({kFastest, rung_settings("fused", 1)});
+    lines.push_back({kFastestPool, rung_settings("fused", 1)});
     return lines;
 }
 
@@ -140,7 +134,7 @@ class Pool : public Study {
     [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
         const auto scene = study_scene(options.scene, choose(options.width, options.is_quick, 200, 400));
         RenderSettings settings;
-        settings.end_sample = choose(options.spp, options.is_quick, 2, 4);
+        settings.end_sample = choose(options.spp, options.is_quick, 4, 8);
         settings.depth = static_cast<std::int32_t>(choose(options.depth, options.is_quick, 50, 50));
         settings.seed = options.seed;
         settings.schedule = parse_schedule("dynamic");
@@ -163,7 +157,7 @@ class Pool : public Study {
                 }
             }
             for (Line line : lines()) {
-                if (line.name == kPaper) continue;
+                if (line.name == kPaperPool) continue;
                 for (const Sort sort : {Sort::None, Sort::Material}) {
                     line.pool.sort = sort;
                     cases.push_back(pool_case("sort", line, scene, settings, repeats));
@@ -171,186 +165,35 @@ class Pool : public Study {
             }
         }
         for (Line line : lines()) {
-            if (line.pool.scope != PoolScope::Shared || line.name == kPaper) continue;
+            if (line.pool.scope != PoolScope::Shared || line.name == kPaperPool) continue;
             for (const std::int64_t batch : {256, 1024, 4096, 16384}) {
                 line.pool.batch = batch;
                 cases.push_back(pool_case("batch", line, scene, settings, repeats));
             }
         }
-        add_rounds(cases, options, scene->compiled.pixel_count(), settings);
+        add_rounds(cases, scene, settings);
         return cases;
     }
 
     [[nodiscard]] Summary summarise(const Table& data, const StudyOptions&) const override {
-        Summary summary;
-        TextTable crossings{"The smallest capacity that beats recursion in every run", {"pool"}, {}};
-        for (const Line& line : lines()) crossings.rows.push_back({line.name});
-        for (const Value& threads : thread_values(data)) {
-            const Table here = data.where("threads", threads);
-            summary.tables.push_back(by_capacity(here, threads.get<int>()));
-            crossings.header.push_back(threads_text(threads.get<int>()));
-            for (std::vector<std::string>& row : crossings.rows)
-                row.push_back(to_text(crossover(ratios_by_capacity(here, row.front()))));
-        }
-        summary.tables.push_back(std::move(crossings));
-        for (const Value& threads : thread_values(data))
-            summary.tables.push_back(by_sort(data.where("threads", threads), threads.get<int>()));
-        summary.tables.push_back(by_batch(data));
-        summary.tables.push_back(by_depth(data));
-        add_findings(summary, data);
-        add_pictures(summary);
-        summary.notes.push_back(
-            "Capacity is of each pool; the largest holds every path of the render. To beat recursion is to be faster "
-            "in "
-            "every one of the runs taken side by side. Batches of a shared pool are at most 4096 records, and small "
-            "enough "
-            "that each thread finds two.");
-        return summary;
+        return summarise_pool(data);
     }
 
   private:
-    /// Of a drained and a regenerating pool, over a few fillings of the default shared pool.
-    static void add_rounds(std::vector<Case>& cases, const StudyOptions& options, std::int64_t pixels,
+    /// Of a drained and a regenerating pool, over a few fillings.
+    static void add_rounds(std::vector<Case>& cases, const std::shared_ptr<const StudyScene>& scene,
                            RenderSettings settings) {
         constexpr std::int64_t kFillings = 4;
-        const auto scene = study_scene(options.scene, choose(options.width, options.is_quick, 200, 400));
+        const std::int64_t pixels = scene->compiled.pixel_count();
         settings.threads = 1;  // so that every run has the same rounds
         settings.end_sample =
             std::clamp<std::int64_t>(kFillings * PoolSettings::kSharedCapacity / pixels, 1, settings.end_sample);
-        for (const Line& line : lines())
-            if (line.pool.scope == PoolScope::Shared && line.name != kPaper)
-                cases.push_back(rounds_case(line, scene, settings));
-    }
-
-    static std::vector<Value> thread_values(const Table& data) {
-        return data.where("axis", "recursion").distinct("threads");
-    }
-    static std::string threads_text(int threads) {
-        return fmt::format("{} thread{}", threads, threads == 1 ? "" : "s");
-    }
-
-    /// Of rows of one case, to the recursion of the same thread count in `here`.
-    static Spread to_recursion(const Table& here, const Table& rows) {
-        return spread(ratios(rows.numbers("mpaths_per_s"), here.where("axis", "recursion").numbers("mpaths_per_s")));
-    }
-    static std::vector<AtCapacity> ratios_by_capacity(const Table& here, const std::string& line) {
-        std::vector<AtCapacity> measured;
-        const Table rows = here.where("axis", "capacity").where("engine", line);
-        for (const Value& capacity : rows.distinct("capacity"))
-            measured.push_back({capacity.get<std::int64_t>(), to_recursion(here, rows.where("capacity", capacity))});
-        std::sort(measured.begin(), measured.end(),
-                  [](const auto& a, const auto& b) { return a.capacity < b.capacity; });
-        return measured;
-    }
-
-    static TextTable by_capacity(const Table& here, int threads) {
-        TextTable table{fmt::format("Ratio to recursion by capacity, {}", threads_text(threads)), {"pool"}, {}};
-        for (const AtCapacity& at : ratios_by_capacity(here, kPaper))
-            table.header.push_back(std::to_string(at.capacity));
-        for (const Line& line : lines()) {
-            std::vector<std::string> row{line.name};
-            for (const AtCapacity& at : ratios_by_capacity(here, line.name)) row.push_back(to_text(at.ratio));
-            table.rows.push_back(std::move(row));
+        for (Line line : lines()) {
+            if (line.pool.scope != PoolScope::Shared || line.name == kPaperPool) continue;
+            line.pool.capacity =
+                std::clamp<std::int64_t>(pixels * settings.end_sample / kFillings, 64, PoolSettings::kSharedCapacity);
+            cases.push_back(rounds_case(line, scene, settings));
         }
-        return table;
-    }
-
-    static TextTable by_sort(const Table& here, int threads) {
-        TextTable table{fmt::format("Sorting by material, {}", threads_text(threads)),
-                        {"pool", "capacity", "ratio to recursion, unsorted", "sorted", "sorted over unsorted"},
-                        {}};
-        const Table all = here.where("axis", "sort");
-        for (const Value& line : all.distinct("engine")) {
-            const Table unsorted = all.where("engine", line).where("sort", "none");
-            const Table sorted = all.where("engine", line).where("sort", "material");
-            table.rows.push_back(
-                {line.get<std::string>(), unsorted.distinct("capacity").front().dump(),
-                 to_text(to_recursion(here, unsorted)), to_text(to_recursion(here, sorted)),
-                 to_text(spread(ratios(sorted.numbers("mpaths_per_s"), unsorted.numbers("mpaths_per_s"))))});
-        }
-        return table;
-    }
-
-    static TextTable by_batch(const Table& data) {
-        const Table all = data.where("axis", "batch");
-        const Value threads = all.distinct("threads").front();
-        const Table here = data.where("threads", threads);
-        TextTable table{fmt::format("Ratio to recursion by batch, {}", threads_text(threads.get<int>())), {"pool"}, {}};
-        for (const Value& batch : all.distinct("batch")) table.header.push_back(batch.dump());
-        for (const Value& line : all.distinct("engine")) {
-            std::vector<std::string> row{line.get<std::string>()};
-            for (const Value& batch : all.distinct("batch"))
-                row.push_back(to_text(to_recursion(here, all.where("engine", line).where("batch", batch))));
-            table.rows.push_back(std::move(row));
-        }
-        return table;
-    }
-
-    /// How the pool that drains thins out: the mean over its fillings.
-    static TextTable by_depth(const Table& data) {
-        const Table rounds = data.where("axis", "rounds").where("refill", "drain");
-        TextTable table{"Rounds of the shared pool that drains, by depth",
-                        {"depth", "rounds", "records, mean", "part of the first round", "survive", "lanes filled"},
-                        {}};
-        double at_first = 0;
-        for (const Value& depth : rounds.distinct("depth")) {
-            const Table here = rounds.where("depth", depth);
-            const auto sum = [&](const char* column) {
-                double total = 0;
-                for (const double value : here.numbers(column)) total += value;
-                return total;
-            };
-            const auto count = static_cast<double>(here.rows().size());
-            if (at_first == 0) at_first = sum("records_in") / count;
-            table.rows.push_back({depth.dump(), fmt::format("{}", here.rows().size()),
-                                  fmt::format("{:.0f}", sum("records_in") / count),
-                                  fmt::format("{:.2g} %", 100 * sum("records_in") / count / at_first),
-                                  fmt::format("{:.0f} %", 100 * sum("records_out") / sum("records_in")),
-                                  fmt::format("{:.0f} %", 100 * sum("records_in") / sum("lanes"))});
-        }
-        return table;
-    }
-
-    /// The best and the worst capacity of a line decide whether it is slower than recursion.
-    static void add_findings(Summary& summary, const Table& data) {
-        const Value threads = thread_values(data).back();
-        const Table here = data.where("threads", threads);
-        const auto best = [&](const std::string& line) {
-            const std::vector<AtCapacity> all = ratios_by_capacity(here, line);
-            return *std::max_element(all.begin(), all.end(), [](const AtCapacity& a, const AtCapacity& b) {
-                return a.ratio.median < b.ratio.median;
-            });
-        };
-        const auto add = [&](const char* line, const char* which) {
-            const AtCapacity at = best(line);
-            const Verdict verdict = at.ratio.high < 1  ? Verdict::Holds
-                                    : at.ratio.low > 1 ? Verdict::DoesNotHold
-                                                       : Verdict::CannotTell;
-            summary.findings.push_back(
-                {"Figure 8", fmt::format("the pool is slower than basic recursion: {}", which), "slower",
-                 fmt::format("at its best capacity, {} records, {} times as fast as recursion, {}", at.capacity,
-                             to_text(at.ratio), threads_text(threads.get<int>())),
-                 verdict, verdict == Verdict::CannotTell ? "the spread of the runs includes 1" : ""});
-        };
-        add(kPaper, "as the paper has it, a ray at a time");
-        add("shared, drain", "the same pool with wide stages and streams");
-        add(kFastest, "a pool for each thread, refilled at once");
-    }
-
-    static void add_pictures(Summary& summary) {
-        summary.pictures.push_back(
-            {"capacity", "How large a pool must be to beat recursion",
-             "Each line is a pool, by its capacity: how many times as fast as recursion, with a band from the lowest "
-             "to the "
-             "highest run. What to see: where a line rises above 1, the pool wins. The paper's pool, a ray at a time, "
-             "hardly ever does; with wide stages even a shared pool does once it is large; a pool of each thread's own "
-             "wins from a few hundred records on."});
-        summary.pictures.push_back(
-            {"rounds", "How full the pool is, round by round",
-             "Left: records in the shared pool at each round, of the part of the render that is shown. Right: the pool "
-             "that drains, by rounds since it was filled (a line for the mean of its fillings), and how full the "
-             "registers are that its batches are worked on with. What to see: a pool that drains thins out with every "
-             "round and works on a few records for most of its rounds; one that is refilled at once stays full."});
     }
 };
 

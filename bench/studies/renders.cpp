@@ -111,6 +111,10 @@ std::vector<int> one_and_all(int most) {
     return most == 1 ? std::vector{1} : std::vector{1, most};
 }
 
+std::string threads_text(int threads) {
+    return fmt::format("{} thread{}", threads, threads == 1 ? "" : "s");
+}
+
 int core_count() {
     return omp_get_num_procs();
 }

@@ -16,7 +16,8 @@ def pairs(axis, groups, spread_of):
              [spread_of(where(rows, layout=layout)) for _, rows in groups], height=0.38, label=layout, **style)
     axis.set_yticks(range(len(groups)), [label for label, _ in groups])
     axis.invert_yaxis()
-    axis.set_xlim(left=0)
+    medians = [spread_of(where(rows, layout=layout))[0] for _, rows in groups for layout in LAYOUTS]
+    axis.set_xlim(0, 1.4 * max(medians) or 1)  # a disturbed run may lie beyond
     axis.grid(axis="y", visible=False)
 
 
@@ -38,7 +39,9 @@ def misses_percent(rows):
 def framebuffer(run, rows):
     clock = where(rows, source="clock")
     counted = [row for row in rows if row["source"] != "clock"]
-    figure, (left, right) = plt.subplots(1, 2, figsize=(12, 5.4))
+    panels = 2 if counted else 1
+    figure, axes = plt.subplots(1, panels, figsize=(2 + 5 * panels, 5.4), squeeze=False)
+    left = axes[0][0]
 
     groups = []
     for engine, width, threads in distinct(clock, "engine", "width", "threads"):
@@ -53,14 +56,11 @@ def framebuffer(run, rows):
         here = where(counted, engine=engine, width=width, part=part)
         what = {"render": "whole render", "accumulate": "adding to the sums"}[part]
         groups.append((f"{engine}\n{size_text(here[0])} of sums, {what}", here))
-    if groups:
+    if counted:
+        right = axes[0][1]
         pairs(right, sorted(groups, key=lambda group: (group[0].split("\n")[0], "adding" in group[0])), misses_percent)
         right.set_title(f"first-level cache misses, by {counted[0]['source']}")
         right.set_xlabel("% of accesses to data")
-    else:
-        right.set_axis_off()
-        right.text(0.5, 0.5, "cache misses were not counted:\nno hardware counters, no build that\ncachegrind can run",
-                   ha="center", va="center", transform=right.transAxes)
     left.legend(loc="lower right")
     return figure
 

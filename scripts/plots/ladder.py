@@ -45,27 +45,32 @@ def ratio_text(rows, recursive):
 def ladder(run, rows):
     engines = distinct(rows, "engine")
     counts = sorted(distinct(rows, "threads"))
-    figure, axes = plt.subplots(1, len(counts), figsize=(6 + 4.5 * len(counts), 6.2), sharey=True, squeeze=False)
+    figure, axes = plt.subplots(1, len(counts), figsize=(6 + 4.5 * len(counts), 6.2), sharex=True, sharey=True, squeeze=False)
     labels = {}
+    # A shared pool on a busy machine can wait without measure: its bar ends in an arrow.
+    limit = 2 * max(sum(part[0] for part in parts_of(where(rows, engine="recursive", threads=count))) for count in counts)
+    longest = 0
     for axis, count in zip(axes[0], counts):
         recursive = where(rows, engine="recursive", threads=count)
-        longest = 0
         for place, engine in enumerate(engines):
             of_engine = where(rows, engine=engine, threads=count)
             left = 0
             for length, label, colour, hatch in parts_of(of_engine):
-                if length > 0:
-                    bar = axis.barh(place, length, left=left, height=0.75, color=colour, hatch=hatch, edgecolor="black",
+                shown = min(length, limit - left)
+                if shown > 0:
+                    bar = axis.barh(place, shown, left=left, height=0.75, color=colour, hatch=hatch, edgecolor="black",
                                     linewidth=0.5)
                     labels.setdefault(label, bar)
                 left += length
-            axis.text(left, place, "  " + ratio_text(where(of_engine, clocks="off"), recursive), va="center", fontsize=9)
-            longest = max(longest, left)
-        axis.set_xlim(0, longest * 1.5)
+            arrow = "" if left <= limit else f" → {left:.0f} ns "
+            axis.text(min(left, limit), place, arrow + "  " + ratio_text(where(of_engine, clocks="off"), recursive),
+                      va="center", fontsize=9)
+            longest = max(longest, min(left, limit))
         axis.set_yticks(range(len(engines)), engines)
         axis.set_title(f"{count:.0f} thread{'s' if count > 1 else ''}")
         axis.set_xlabel("nanoseconds of a thread for each ray")
         axis.grid(axis="y", visible=False)
+    axes[0][0].set_xlim(0, longest * 1.6)
     axes[0][0].invert_yaxis()
     order = [label for _, label, *_ in PARTS] + [WHOLE[0]]
     shown = [label for label in order if label in labels]

@@ -26,6 +26,7 @@ def count_text(value):
 def capacity(run, rows):
     counts = sorted(distinct(where(rows, axis="recursion"), "threads"))
     figure, axes = plt.subplots(1, len(counts), figsize=(5 + 4 * len(counts), 5.6), sharey=True, squeeze=False)
+    highest = 1
     for axis, count in zip(axes[0], counts):
         here = where(rows, threads=count)
         recursion = [row["mpaths_per_s"] for row in where(here, axis="recursion")]
@@ -35,16 +36,16 @@ def capacity(run, rows):
             for _, runs in groups:
                 ratios = [row["mpaths_per_s"] / base for row, base in zip(runs, recursion)]
                 spreads.append((statistics.median(ratios), min(ratios), max(ratios)))
+            highest = max(highest, *(s[0] for s in spreads))
             line(axis, [key[0] for key, _ in groups], spreads, label=engine, **style)
-        axis.axhline(1, color="black", linewidth=1.5)
-        axis.text(1, 1.0, "recursion ", transform=axis.get_yaxis_transform(), ha="right", va="bottom", fontsize=9)
+        axis.axhline(1, color="black", linewidth=2, label="recursion")
         axis.set_xscale("log", base=4)
         ticks = sorted(distinct(where(here, axis="capacity"), "capacity"))
         axis.set_xticks(ticks, [count_text(t) for t in ticks[:-1]] + ["all"])
         axis.minorticks_off()
-        axis.set_ylim(bottom=0)
         axis.set_title(f"{count:.0f} thread{'s' if count > 1 else ''}")
         axis.set_xlabel("capacity of a pool, records (all: every path of the render)")
+    axes[0][0].set_ylim(0, highest * 1.25)  # a disturbed run may lie above
     axes[0][0].set_ylabel("times as fast as recursion")
     axes[0][-1].legend(loc="upper left", bbox_to_anchor=(1, 1))
     return figure
@@ -53,7 +54,7 @@ def capacity(run, rows):
 def rounds(run, rows):
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.8))
     rows = where(rows, axis="rounds")
-    for refill, label, style in (("regenerate", "refilled at once", {"color": RED, "linestyle": "-"}),
+    for refill, label, style in (("regenerate", "refilled at once", {"color": RED, "linestyle": "--"}),
                                  ("drain", "drained, then refilled", {"color": BLUE, "linestyle": "-"})):
         here = where(rows, refill=refill)
         left.plot([row["round"] for row in here], [row["records_in"] for row in here], linewidth=1.8, label=label, **style)
@@ -66,7 +67,6 @@ def rounds(run, rows):
     drained = where(rows, refill="drain")
     by_depth = sorted(grouped(drained, "depth").items())
     depths = [key[0] for key, _ in by_depth]
-    fillings = len(by_depth[0][1]) if by_depth else 1
     first = sum(row["records_in"] for row in by_depth[0][1]) if by_depth else 1
     left_over = [100 * sum(row["records_in"] for row in group) / first for _, group in by_depth]
     lanes = [100 * sum(row["records_in"] for row in group) / sum(row["lanes"] for row in group) for _, group in by_depth]
@@ -76,8 +76,8 @@ def rounds(run, rows):
     right.set_ylim(top=130)
     right.yaxis.set_major_formatter(lambda value, _: f"{value:g} %")
     right.set_xlabel("depth: rounds since the pool was filled")
-    right.set_title(f"drained pool, mean of {fillings} filling{'s' if fillings > 1 else ''}")
-    left.set_title("shared pool")
+    right.set_title("the pool that drains")
+    left.set_title(f"shared pool of {drained[0]['capacity']:.0f} records" if drained else "shared pool")
     right.legend(loc="lower left")
     return figure
 
