@@ -1,11 +1,11 @@
 #include "cli/pool_options.h"
 
-#include <algorithm>
-#include <iterator>
 #include <limits>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+
+#include "wavefront/setting_names.h"
 
 namespace raypool::cli {
 
@@ -13,43 +13,29 @@ namespace {
 
 using namespace wavefront;
 
-/// The words of a setting, in the order of its enumerators.
-using Words = std::vector<std::string>;
-const Words kScope{"shared", "thread"};
-const Words kRefill{"drain", "regenerate"};
-const Words kWidth{"scalar", "simd"};
-const Words kIntersection{"single", "stream"};
-const Words kCamera{"staged", "fused"};
-const Words kSort{"none", "material"};
-const Words kAppend{"in-place", "atomic", "prefix-sum"};
-const Words kAccumulator{"owned", "atomic", "private", "atomic-float", "atomic-double"};
-
-/// Sets `value` to the enumerator that `word` names, if it names one.
-template <class Enum>
-void set(Enum& value, const Words& words, const std::string& word) {
-    const auto found = std::find(words.begin(), words.end(), word);
-    if (found != words.end()) value = static_cast<Enum>(std::distance(words.begin(), found));
-}
-
-template <class Enum>
-const std::string& word(const Words& words, Enum value) {
-    return words[static_cast<std::size_t>(value)];
+/// Sets `value` to what `word` names; leaves it if that is nothing.
+template <class Setting>
+void set(Setting& value, const std::string& word) {
+    value = parse_setting<Setting>(word).value_or(value);
 }
 
 }  // namespace
 
 void add_pool_options(CLI::App& command, PoolOptions& options) {
-    const auto add = [&](const char* name, std::string& target, const Words& words, const char* what) {
+    const auto add = [&]<class Setting>(const char* name, std::string& target, Setting, const char* what) {
+        constexpr auto& kWords = SettingWords<Setting>::kWords;
+        const std::vector<std::string> words(kWords.begin(), kWords.end());
         command.add_option(name, target, what)->check(CLI::IsMember(words))->group("Wavefront engine");
     };
-    add("--pool-scope", options.scope, kScope, "One pool for all threads, or one for each (default: thread)");
-    add("--refill", options.refill, kRefill, "Camera rays enter when the pool is empty, or when there is room");
-    add("--stage-width", options.width, kWidth, "Rays that a stage treats at a time (default: simd)");
-    add("--intersect", options.intersection, kIntersection, "Ray by ray, or as streams (default: stream)");
-    add("--camera", options.camera, kCamera, "Camera rays enter the pool at once, or after their first bounce");
-    add("--sort", options.sort, kSort, "Order of records before they are shaded (default: none)");
-    add("--append", options.append, kAppend, "How survivors of a shared pool reach the next round");
-    add("--accumulator", options.accumulator, kAccumulator,
+    const PoolSettings defaults;
+    add("--pool-scope", options.scope, defaults.scope, "One pool for all threads, or one for each (default: thread)");
+    add("--refill", options.refill, defaults.refill, "Camera rays enter when the pool is empty, or when there is room");
+    add("--stage-width", options.width, defaults.width, "Rays that a stage treats at a time (default: simd)");
+    add("--intersect", options.intersection, defaults.intersection, "Ray by ray, or as streams (default: stream)");
+    add("--camera", options.camera, defaults.camera, "Camera rays enter the pool at once, or after their first bounce");
+    add("--sort", options.sort, defaults.sort, "Order of records before they are shaded (default: none)");
+    add("--append", options.append, defaults.append, "How survivors of a shared pool reach the next round");
+    add("--accumulator", options.accumulator, defaults.accumulator,
         "How radiance reaches the framebuffer (default: owned, of a shared pool atomic)");
     const auto count = CLI::Range(std::int64_t{1}, std::int64_t{std::numeric_limits<std::int32_t>::max()});
     command.add_option("--pool-rays", options.rays, "Most records in a pool")->check(count)->group("Wavefront engine");
@@ -60,32 +46,32 @@ void add_pool_options(CLI::App& command, PoolOptions& options) {
 
 PoolSettings pool_settings(const PoolOptions& options) {
     PoolSettings settings;
-    set(settings.scope, kScope, options.scope);
+    set(settings.scope, options.scope);
     if (settings.scope == PoolScope::Shared) {
         settings.accumulator = Accumulator::AtomicInt64;
         settings.capacity = PoolSettings::kSharedCapacity;
     }
-    set(settings.refill, kRefill, options.refill);
-    set(settings.width, kWidth, options.width);
-    set(settings.intersection, kIntersection, options.intersection);
-    set(settings.camera, kCamera, options.camera);
-    set(settings.sort, kSort, options.sort);
-    set(settings.append, kAppend, options.append);
-    set(settings.accumulator, kAccumulator, options.accumulator);
+    set(settings.refill, options.refill);
+    set(settings.width, options.width);
+    set(settings.intersection, options.intersection);
+    set(settings.camera, options.camera);
+    set(settings.sort, options.sort);
+    set(settings.append, options.append);
+    set(settings.accumulator, options.accumulator);
     if (options.rays != 0) settings.capacity = options.rays;
     if (options.batch != 0) settings.batch = options.batch;
     return settings;
 }
 
 nlohmann::json to_json(const PoolSettings& settings) {
-    return {{"scope", word(kScope, settings.scope)},
-            {"refill", word(kRefill, settings.refill)},
-            {"stage_width", word(kWidth, settings.width)},
-            {"intersect", word(kIntersection, settings.intersection)},
-            {"camera", word(kCamera, settings.camera)},
-            {"sort", word(kSort, settings.sort)},
-            {"append", word(kAppend, settings.append)},
-            {"accumulator", word(kAccumulator, settings.accumulator)},
+    return {{"scope", to_string(settings.scope)},
+            {"refill", to_string(settings.refill)},
+            {"stage_width", to_string(settings.width)},
+            {"intersect", to_string(settings.intersection)},
+            {"camera", to_string(settings.camera)},
+            {"sort", to_string(settings.sort)},
+            {"append", to_string(settings.append)},
+            {"accumulator", to_string(settings.accumulator)},
             {"rays", settings.capacity},
             {"batch", settings.batch}};
 }

@@ -78,7 +78,7 @@ RenderSettings render_settings(const RenderOptions& options) {
     settings.threads = thread_count(options.threads);
     settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
     settings.grain = parse_grain(options.grain);
-    settings.count_work = options.count_work;
+    settings.count_work = settings.log_rounds = options.count_work;
     return settings;
 }
 

@@ -44,15 +44,17 @@ struct RenderSettings {
     int threads = 1;
     LoopSchedule schedule;
     Grain grain;
-    bool count_work = false;  ///< count box and primitive tests (slower)
+    bool count_work = false;  ///< count box and primitive tests (slower: with code compiled for every feature)
+    bool log_rounds = false;  ///< report the rounds of a wavefront engine; two looks at the clock a stage and batch
     Progress* progress = nullptr;
 };
 
-/// The stages of a round of a wavefront engine.
-enum class Stage : std::uint8_t { Generate, Intersect, Sort, Shade, Accumulate };
-inline constexpr std::size_t kStageCount = 5;
-inline constexpr std::array<const char*, kStageCount> kStageNames{"generate", "intersect", "sort", "shade",
-                                                                  "accumulate"};
+/// The stages of a round of a wavefront engine. Append is the traffic of records from round to round: what survivors
+/// and split records take to reach their places.
+enum class Stage : std::uint8_t { Generate, Intersect, Sort, Shade, Accumulate, Append };
+inline constexpr std::size_t kStageCount = 6;
+inline constexpr std::array<const char*, kStageCount> kStageNames{"generate", "intersect",  "sort",
+                                                                  "shade",    "accumulate", "append"};
 
 /// One round of a wavefront engine: all threads, or, of per-thread pools, the rounds of that number added up.
 struct RoundWork {
@@ -85,7 +87,7 @@ struct RenderReport {
     double seconds = 0;  ///< wall clock of the parallel region
     std::vector<ThreadWork> threads;
     SampleAudit audit;
-    std::vector<RoundWork> rounds;  ///< of a wavefront engine, with count_work
+    std::vector<RoundWork> rounds;  ///< of a wavefront engine, with log_rounds
     std::size_t record_bytes = 0;   ///< of a wavefront engine: moved in and out of the pool by a record
     std::size_t pool_bytes = 0;     ///< of a wavefront engine: all pools, streams and accumulators at their largest
 

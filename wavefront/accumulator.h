@@ -27,54 +27,86 @@ class AccumulatorBase {
     [[nodiscard]] virtual std::size_t bytes() const { return 0; }
 };
 
-/// Plain additions. Right as long as no two threads add to a pixel.
-template <class Scalar>
-class OwnedInt64 : public AccumulatorBase<Scalar> {
-  public:
-    explicit OwnedInt64(Framebuffer& framebuffer) : sums_(framebuffer.sums()) {}
-    void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) override {
-        for (std::size_t i = 0; i < deposits.count(); ++i) {
-            const FixedRgb fixed = converter.convert<Scalar>(deposits.radiance(i));
-            std::int64_t* sum = &sums_[3 * std::size_t{deposits.pixel(i)}];
-            for (int k = 0; k < 3; ++k) sum[k] += fixed[k];
-        }
+/// Where the three sums of a pixel are: side by side, as in the framebuffer, or each in a plane of its own. To compare
+/// them is the paper's "interleaved against three planar framebuffers".
+struct Interleaved {
+    std::int64_t* sums;
+    [[nodiscard]] std::int64_t& at(std::size_t pixel, int k) const {
+        return sums[3 * pixel + static_cast<std::size_t>(k)];
     }
-
-  private:
-    std::span<std::int64_t> sums_;
+};
+struct Planar {
+    std::int64_t* sums;
+    std::size_t pixel_count;
+    [[nodiscard]] std::int64_t& at(std::size_t pixel, int k) const {
+        return sums[static_cast<std::size_t>(k) * pixel_count + pixel];
+    }
 };
 
-/// Atomic additions to the shared framebuffer.
-template <class Scalar>
-class AtomicInt64 : public AccumulatorBase<Scalar> {
-  public:
-    explicit AtomicInt64(Framebuffer& framebuffer) : sums_(framebuffer.sums()) {}
-    void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) override {
-        for (std::size_t i = 0; i < deposits.count(); ++i) {
-            const FixedRgb fixed = converter.convert<Scalar>(deposits.radiance(i));
-            std::int64_t* sum = &sums_[3 * std::size_t{deposits.pixel(i)}];
-            for (int k = 0; k < 3; ++k) std::atomic_ref(sum[k]).fetch_add(fixed[k], std::memory_order_relaxed);
+/// Plain additions are right as long as no two threads add to a pixel.
+enum class Addition : bool { Plain, Atomic };
+
+/// Adds deposits, as integers, to sums in either layout.
+template <Addition addition, class Layout, class Scalar>
+void add_integers(const Layout& layout, const Deposits<Scalar>& deposits, SampleConverter& converter) {
+    for (std::size_t i = 0; i < deposits.count(); ++i) {
+        const FixedRgb fixed = converter.convert<Scalar>(deposits.radiance(i));
+        for (int k = 0; k < 3; ++k) {
+            std::int64_t& sum = layout.at(deposits.pixel(i), k);
+            if constexpr (addition == Addition::Atomic) {
+                std::atomic_ref(sum).fetch_add(fixed[static_cast<std::size_t>(k)], std::memory_order_relaxed);
+            } else {
+                sum += fixed[static_cast<std::size_t>(k)];
+            }
         }
+    }
+}
+
+/// Adds to the framebuffer itself.
+template <class Scalar, Addition addition>
+class InterleavedInt64 : public AccumulatorBase<Scalar> {
+  public:
+    explicit InterleavedInt64(Framebuffer& framebuffer) : sums_{framebuffer.sums().data()} {}
+    void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) override {
+        add_integers<addition>(sums_, deposits, converter);
     }
 
   private:
+    Interleaved sums_;
+};
+
+/// Adds to three planes, which are put into the framebuffer at the end.
+template <class Scalar, Addition addition>
+class PlanarInt64 : public AccumulatorBase<Scalar> {
+  public:
+    explicit PlanarInt64(Framebuffer& framebuffer)
+        : sums_(framebuffer.sums()), planes_(sums_.size()), planar_{planes_.data(), sums_.size() / 3} {}
+    void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) override {
+        add_integers<addition>(planar_, deposits, converter);
+    }
+    void finish() override {
+        for (std::size_t pixel = 0; pixel < planar_.pixel_count; ++pixel)
+            for (int k = 0; k < 3; ++k) Interleaved{sums_.data()}.at(pixel, k) += planar_.at(pixel, k);
+    }
+    [[nodiscard]] std::size_t bytes() const override { return planes_.size() * sizeof(std::int64_t); }
+
+  private:
     std::span<std::int64_t> sums_;
+    std::vector<std::int64_t> planes_;
+    Planar planar_;
 };
 
 /// A framebuffer for each thread, merged at the end.
 template <class Scalar>
 class PrivateInt64 : public AccumulatorBase<Scalar> {
   public:
-    PrivateInt64(Framebuffer& framebuffer, int threads) : sums_(framebuffer.sums()), parts_(threads) {
+    PrivateInt64(Framebuffer& framebuffer, int threads)
+        : sums_(framebuffer.sums()), parts_(static_cast<std::size_t>(threads)) {
         for (auto& part : parts_) part.resize(sums_.size());
     }
     void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int thread) override {
-        std::int64_t* part = parts_[static_cast<std::size_t>(thread)].data();
-        for (std::size_t i = 0; i < deposits.count(); ++i) {
-            const FixedRgb fixed = converter.convert<Scalar>(deposits.radiance(i));
-            std::int64_t* sum = part + 3 * std::size_t{deposits.pixel(i)};
-            for (int k = 0; k < 3; ++k) sum[k] += fixed[k];
-        }
+        add_integers<Addition::Plain>(Interleaved{parts_[static_cast<std::size_t>(thread)].data()}, deposits,
+                                      converter);
     }
     void finish() override {
         for (const auto& part : parts_)
@@ -116,11 +148,15 @@ template <class Scalar>
 std::unique_ptr<AccumulatorBase<Scalar>> make_accumulator(Accumulator kind, Framebuffer& framebuffer, int threads) {
     switch (kind) {
         case Accumulator::OwnedInt64:
-            return std::make_unique<OwnedInt64<Scalar>>(framebuffer);
+            return std::make_unique<InterleavedInt64<Scalar, Addition::Plain>>(framebuffer);
         case Accumulator::AtomicInt64:
-            return std::make_unique<AtomicInt64<Scalar>>(framebuffer);
+            return std::make_unique<InterleavedInt64<Scalar, Addition::Atomic>>(framebuffer);
         case Accumulator::PrivateInt64:
             return std::make_unique<PrivateInt64<Scalar>>(framebuffer, threads);
+        case Accumulator::OwnedPlanarInt64:
+            return std::make_unique<PlanarInt64<Scalar, Addition::Plain>>(framebuffer);
+        case Accumulator::AtomicPlanarInt64:
+            return std::make_unique<PlanarInt64<Scalar, Addition::Atomic>>(framebuffer);
         case Accumulator::AtomicFloat:
             return std::make_unique<AtomicReal<Scalar, float>>(framebuffer);
         case Accumulator::AtomicDouble:

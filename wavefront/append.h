@@ -2,7 +2,8 @@
 ///
 /// Records are worked on in batches, a range of the pool each, by one thread at a time. When a batch is done, keep()
 /// passes on its survivors; when all are, every thread calls end_round(), between two barriers. A new strategy is a
-/// class with these two functions.
+/// class with these two functions. Where threads must wait for each other in between, end_round() calls the `wait`
+/// that it is given, so that waiting is not taken for work.
 /// Thread safety: keep() may be called by several threads for different batches; all else is read-only in a round.
 #pragma once
 
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -71,7 +73,7 @@ class SharedPool {
     /// the next records may be put.
     virtual std::size_t keep(std::int64_t b, std::size_t from, std::size_t front, const Records& overflow,
                              std::size_t split) = 0;
-    virtual void end_round() = 0;
+    virtual void end_round(const std::function<void()>& wait) = 0;
     [[nodiscard]] virtual std::size_t bytes() const { return Records::bytes(allocated()); }
 
   protected:
@@ -109,7 +111,7 @@ class InPlacePool : public SharedPool<needs, Scalar> {
         counts_[static_cast<std::size_t>(b)] = end - this->first(b);
         return end;
     }
-    void end_round() override {
+    void end_round(const std::function<void()>&) override {
 #pragma omp single nowait
         {
             this->total_ = 0;
@@ -153,7 +155,7 @@ class AtomicPool : public DensePool<needs, Scalar> {
         overflow.copy_to(next_records_, target + front, 0, split);
         return this->first(b);
     }
-    void end_round() override {
+    void end_round(const std::function<void()>&) override {
 #pragma omp single nowait
         {
             std::swap(this->records_, next_records_);
@@ -187,13 +189,13 @@ class PrefixSumPool : public DensePool<needs, Scalar> {
         buffer.count += front + split;
         return this->first(b);
     }
-    void end_round() override {
+    void end_round(const std::function<void()>& wait) override {
         const auto thread = static_cast<std::size_t>(omp_get_thread_num());
         std::size_t target = 0;
         for (std::size_t i = 0; i < thread; ++i) target += buffers_[i].count;
         buffers_[thread].records->copy_to(this->records_, target, 0, buffers_[thread].count);
-#pragma omp barrier
-#pragma omp single
+        wait();
+#pragma omp single nowait
         {
             this->total_ = 0;
             for (Buffer& buffer : buffers_) this->total_ += std::exchange(buffer.count, 0);

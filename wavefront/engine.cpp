@@ -10,9 +10,10 @@ namespace {
 template <class Scalar>
 RenderReport render_any(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const PoolSettings& pool,
                         Framebuffer& framebuffer) {
-    if (pool.scope == PoolScope::Shared && pool.accumulator == Accumulator::OwnedInt64)
+    if (pool.scope == PoolScope::Shared && needs_owned_pixels(pool.accumulator))
         throw InputError(
-            "--accumulator: owned needs --pool-scope thread, since no thread owns a pixel of a shared pool");
+            "--accumulator: owned and owned-planar need --pool-scope thread, since no thread owns a pixel of a shared "
+            "pool");
     const std::int64_t paths = scene.pixel_count() * (settings.end_sample - settings.first_sample);
     if (settings.depth == 0 || paths == 0) {  // no path has a segment
         RenderReport report;

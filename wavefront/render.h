@@ -8,11 +8,11 @@
 namespace raypool::wavefront {
 
 /// The rounds of all threads, added up by their number.
-inline std::vector<RoundWork> merged(const std::vector<RoundLog>& logs) {
+inline std::vector<RoundWork> merged(const ThreadRounds& threads) {
     std::vector<RoundWork> rounds;
-    for (const RoundLog& log : logs) {
-        if (log.rounds().size() > rounds.size()) rounds.resize(log.rounds().size());
-        for (std::size_t i = 0; i < log.rounds().size(); ++i) rounds[i].add(log.rounds()[i]);
+    for (const std::vector<RoundWork>& thread : threads) {
+        if (thread.size() > rounds.size()) rounds.resize(thread.size());
+        for (std::size_t i = 0; i < thread.size(); ++i) rounds[i].add(thread[i]);
     }
     return rounds;
 }
@@ -27,11 +27,11 @@ RenderReport render(const CompiledScene<ScalarOf<Real>>& scene, const RenderSett
     const std::size_t capacity =
         std::max<std::size_t>(static_cast<std::size_t>(pool.capacity), std::size_t{1} << settings.split_depth);
     const auto threads = static_cast<std::size_t>(settings.threads);
-    std::vector<RoundLog> logs(threads, RoundLog(settings.count_work));
+    ThreadRounds rounds(threads);
 
     RenderReport report;
     if (pool.scope == PoolScope::PerThread) {
-        report = render_thread_pools<needs, Real, Work, splitting>(context, capacity, logs);
+        report = render_thread_pools<needs, Real, Work, splitting>(context, capacity, rounds);
         report.pool_bytes = threads * (RayColumns<needs, Scalar>::bytes(capacity) +
                                        Stages<needs, Real, Work, splitting>::bytes(context, capacity));
     } else {
@@ -39,14 +39,14 @@ RenderReport render(const CompiledScene<ScalarOf<Real>>& scene, const RenderSett
                                                           std::size_t{1} << settings.split_depth, capacity);
         const auto shared =
             make_shared_pool<needs, Scalar>(pool.append, capacity, batch, settings.split_depth, settings.threads);
-        report = render_shared_pool<needs, Real, Work, splitting>(context, *shared, logs);
+        report = render_shared_pool<needs, Real, Work, splitting>(context, *shared, rounds);
         report.pool_bytes =
             shared->bytes() + threads * Stages<needs, Real, Work, splitting>::bytes(context, shared->batch());
     }
     accumulator->finish();
     report.pool_bytes += accumulator->bytes();
     report.record_bytes = record_bytes<needs, Scalar>();
-    report.rounds = merged(logs);
+    report.rounds = merged(rounds);
     return report;
 }
 

@@ -1,4 +1,7 @@
-/// What happened in each round: kept by each thread for itself when work is counted, otherwise free.
+/// What happened in each round: kept by each thread for itself when rounds are logged, otherwise free.
+///
+/// A stage's time is what passes between start() and stop(); what lies between a stop() and the next start() is
+/// nobody's.
 #pragma once
 
 #include <omp.h>

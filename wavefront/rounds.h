@@ -13,6 +13,9 @@
 
 namespace raypool::wavefront {
 
+/// What each thread logged.
+using ThreadRounds = std::vector<std::vector<RoundWork>>;
+
 /// Camera paths are brought in this many at a time, a few registers, so that a pool is always nearly full.
 inline constexpr std::size_t kCameraChunk = 64;
 
@@ -72,7 +75,7 @@ class ThreadPool {
 /// The loop over the image of per-thread pools: work items are handed out by OpenMP, as to the recursive engine.
 template <SceneNeeds needs, class Real, class Work, Splitting splitting>
 RenderReport render_thread_pools(const RenderContext<ScalarOf<Real>>& context, std::size_t capacity,
-                                 std::vector<RoundLog>& logs) {
+                                 ThreadRounds& rounds) {
     const auto& scene = context.scene;
     const RenderSettings& settings = context.settings;
     const WorkItems items(scene.width, scene.height, settings.grain);
@@ -88,14 +91,14 @@ RenderReport render_thread_pools(const RenderContext<ScalarOf<Real>>& context, s
         }
         pool.drain();
         pool.stages().report(work, audit);
-        logs[static_cast<std::size_t>(omp_get_thread_num())] = pool.stages().log();
+        rounds[static_cast<std::size_t>(omp_get_thread_num())] = pool.stages().log().rounds();
     });
 }
 
 /// The paper's pool: one for all threads, and a barrier after every round.
 template <SceneNeeds needs, class Real, class Work, Splitting splitting>
 RenderReport render_shared_pool(const RenderContext<ScalarOf<Real>>& context, SharedPool<needs, ScalarOf<Real>>& pool,
-                                std::vector<RoundLog>& logs) {
+                                ThreadRounds& rounds) {
     const auto& scene = context.scene;
     const RenderSettings& settings = context.settings;
     const CameraPaths image({0, scene.width, 0, scene.height}, scene.width, settings.first_sample, settings.end_sample);
@@ -104,7 +107,6 @@ RenderReport render_shared_pool(const RenderContext<ScalarOf<Real>>& context, Sh
     return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
         Stages<needs, Real, Work, splitting> stages(context, pool.batch(), omp_get_thread_num());
         ProgressBatch progress(settings.progress);
-        double waiting = 0;
 
         for (bool is_done = false; !is_done;) {
             const bool takes_camera = pool.is_empty() || context.pool.refill == Refill::Regenerate;
@@ -125,16 +127,15 @@ RenderReport render_shared_pool(const RenderContext<ScalarOf<Real>>& context, Sh
                     progress.add(part.count);
                 }
             }
-            waiting += stages.wait();
-            pool.end_round();
-            waiting += stages.wait();
+            stages.wait();
+            stages.end_round(pool);
+            stages.wait();
             is_done = pool.is_empty() && camera.is_done();
-            waiting += stages.wait();
+            stages.wait();
             stages.log().end_round();
         }
         stages.report(work, audit);
-        work.wait_s = waiting;
-        logs[static_cast<std::size_t>(omp_get_thread_num())] = stages.log();
+        rounds[static_cast<std::size_t>(omp_get_thread_num())] = stages.log().rounds();
     });
 }
 

@@ -27,9 +27,22 @@ enum class Sort : std::uint8_t { None, Material };
 /// taken from one atomic counter; or to places found by a prefix sum over the batches.
 enum class Append : std::uint8_t { InPlace, Atomic, PrefixSum };
 
-/// How radiance reaches the framebuffer. OwnedInt64 needs pixels that belong to one thread, so a per-thread pool;
+/// How radiance reaches the framebuffer. The planar ones add to three planes in place of one interleaved framebuffer;
 /// AtomicFloat and AtomicDouble round, so their image depends on the order of additions: baselines to measure.
-enum class Accumulator : std::uint8_t { OwnedInt64, AtomicInt64, PrivateInt64, AtomicFloat, AtomicDouble };
+enum class Accumulator : std::uint8_t {
+    OwnedInt64,
+    AtomicInt64,
+    PrivateInt64,
+    OwnedPlanarInt64,
+    AtomicPlanarInt64,
+    AtomicFloat,
+    AtomicDouble
+};
+
+/// Whether it needs pixels that belong to one thread, so a per-thread pool.
+constexpr bool needs_owned_pixels(Accumulator accumulator) {
+    return accumulator == Accumulator::OwnedInt64 || accumulator == Accumulator::OwnedPlanarInt64;
+}
 
 struct PoolSettings {
     PoolScope scope = PoolScope::PerThread;

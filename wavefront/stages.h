@@ -46,7 +46,7 @@ class Stages {
           overflow_(splitting == Splitting::On ? most_records : 0),
           sort_scratch_(context.pool.sort == Sort::None ? 0 : most_records),
           converter_(context.fixed),
-          log_(context.settings.count_work) {
+          log_(context.settings.log_rounds) {
         deposits_.reserve(std::max(most_records, kMostDeposits) + 2 * kRays);
     }
 
@@ -118,7 +118,11 @@ class Stages {
     [[nodiscard]] std::size_t overflow_count() const { return overflow_count_; }
     /// Moves the overflow to record `target`. Returns how many records that were.
     std::size_t take_overflow(Records& records, std::size_t target) {
-        if constexpr (splitting == Splitting::On) overflow_.copy_to(records, target, 0, overflow_count_);
+        if constexpr (splitting == Splitting::On) {
+            log_.start();
+            overflow_.copy_to(records, target, 0, overflow_count_);
+            log_.stop(Stage::Append);
+        }
         return std::exchange(overflow_count_, 0);
     }
 
@@ -126,16 +130,30 @@ class Stages {
     /// range the next records may be put.
     template <class Pool>
     std::size_t pass_on(Pool& pool, std::int64_t b, std::size_t first, std::size_t count) {
-        return pool.keep(b, first, count, overflow_, std::exchange(overflow_count_, 0));
+        log_.start();
+        const std::size_t end = pool.keep(b, first, count, overflow_, std::exchange(overflow_count_, 0));
+        log_.stop(Stage::Append);
+        return end;
+    }
+    /// This thread's part in what a shared pool does between two rounds.
+    template <class Pool>
+    void end_round(Pool& pool) {
+        log_.start();
+        pool.end_round([this] {
+            log_.stop(Stage::Append);
+            wait();
+            log_.start();
+        });
+        log_.stop(Stage::Append);
     }
 
-    /// Waits for the other threads. Returns the seconds.
-    double wait() {
+    /// Waits for the other threads.
+    void wait() {
         const double begin = omp_get_wtime();
 #pragma omp barrier
-        const double waited = omp_get_wtime() - begin;
-        log_.waited(waited);
-        return waited;
+        const double seconds = omp_get_wtime() - begin;
+        waited_s_ += seconds;
+        log_.waited(seconds);
     }
 
     RoundLog& log() {
@@ -147,6 +165,7 @@ class Stages {
         work.segments = segments_;
         work.box_tests = work_.box_tests;
         work.primitive_tests = work_.primitive_tests;
+        work.wait_s = waited_s_;
         audit = converter_.audit();
     }
 
@@ -337,6 +356,7 @@ class Stages {
     Work work_;
     std::int64_t paths_ = 0;
     std::int64_t segments_ = 0;
+    double waited_s_ = 0;
 };
 
 }  // namespace raypool::wavefront

@@ -10,6 +10,9 @@ namespace raypool::studies {
 
 std::vector<std::unique_ptr<Study>> all_studies() {
     std::vector<std::unique_ptr<Study>> studies;
+    studies.push_back(framebuffer_study());
+    studies.push_back(ladder_study());
+    studies.push_back(pool_study());
     studies.push_back(schedules_study());
     studies.push_back(needs_study());
     studies.push_back(depth_study());

@@ -2,11 +2,13 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "bench/studies/statistics.h"
+#include "core/error.h"
 #include "core/scene_reader.h"
 #include "core/settings_text.h"
 #include "recursive/engine.h"
@@ -31,10 +33,13 @@ NamedEngine fused_pool() {
     return {"pool", std::make_shared<wavefront::WavefrontEngine>(wavefront::PoolSettings{})};
 }
 NamedEngine canonical_pool() {
-    for (const wavefront::Rung& rung : wavefront::ladder(1))
-        if (rung.name == std::string("shared-stream"))
-            return {"shared pool", std::make_shared<wavefront::WavefrontEngine>(rung.pool)};
-    return {};
+    return {"shared pool", std::make_shared<wavefront::WavefrontEngine>(rung_settings("shared-stream", 1))};
+}
+wavefront::PoolSettings rung_settings(const std::string& rung, int threads) {
+    const std::vector<wavefront::Rung> rungs = wavefront::ladder(threads);
+    const auto found = std::find_if(rungs.begin(), rungs.end(), [&](const auto& r) { return r.name == rung; });
+    RAYPOOL_CHECK(found != rungs.end(), "the ladder has the rung");
+    return found->pool;
 }
 std::vector<NamedEngine> ladder_engines(int threads) {
     std::vector<NamedEngine> engines;
@@ -100,6 +105,14 @@ std::vector<int> thread_counts(int most) {
     for (int n = 1; n < most; n *= 2) counts.push_back(n);
     counts.push_back(most);
     return counts;
+}
+
+std::vector<int> one_and_all(int most) {
+    return most == 1 ? std::vector{1} : std::vector{1, most};
+}
+
+std::string threads_text(int threads) {
+    return fmt::format("{} thread{}", threads, threads == 1 ? "" : "s");
 }
 
 int core_count() {

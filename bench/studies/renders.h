@@ -8,6 +8,7 @@
 #include "bench/studies/study.h"
 #include "core/compiled_scene.h"
 #include "core/engine.h"
+#include "wavefront/settings.h"
 
 namespace raypool::studies {
 
@@ -30,6 +31,8 @@ NamedEngine iterative_engine();
 NamedEngine fused_pool();
 /// The paper's pool, for all threads, with wide stages and streams.
 NamedEngine canonical_pool();
+/// The pool of a rung of the ladder (wavefront/ladder.h) for so many threads. A name that is none is a bug.
+wavefront::PoolSettings rung_settings(const std::string& rung, int threads);
 /// All rungs of the ladder for so many threads, without the two per-pixel engines.
 std::vector<NamedEngine> ladder_engines(int threads);
 
@@ -53,6 +56,10 @@ Case render_case(std::string id, const NamedEngine& engine, const std::shared_pt
 
 /// 1, 2, 4, ... up to `most`, and `most` itself.
 std::vector<int> thread_counts(int most);
+/// 1 and `most`.
+std::vector<int> one_and_all(int most);
+/// "1 thread", "2 threads"
+std::string threads_text(int threads);
 /// Threads that can run at once here.
 int core_count();
 

@@ -8,7 +8,10 @@
 namespace raypool::studies {
 
 std::unique_ptr<Study> depth_study();
+std::unique_ptr<Study> framebuffer_study();
+std::unique_ptr<Study> ladder_study();
 std::unique_ptr<Study> needs_study();
+std::unique_ptr<Study> pool_study();
 std::unique_ptr<Study> schedules_study();
 
 }  // namespace raypool::studies

@@ -71,17 +71,19 @@ std::vector<Knobs> matrix(const RenderSettings& base, std::int64_t whole) {
                                 pool.camera = camera;
                                 pool.width = width;
                                 pool.intersection = intersection;
-                                for (const Accumulator accumulator :
-                                     {Accumulator::OwnedInt64, Accumulator::AtomicInt64}) {
+                                for (const Accumulator accumulator : {Accumulator::OwnedInt64, Accumulator::AtomicInt64,
+                                                                      Accumulator::OwnedPlanarInt64}) {
                                     pool.accumulator = accumulator;
                                     list.push_back(knobs);
                                 }
                                 pool.scope = PoolScope::Shared;
                                 pool.batch = 64;
-                                for (const Append append : {Append::InPlace, Append::Atomic, Append::PrefixSum}) {
+                                for (const auto& [append, accumulator] :
+                                     {std::pair{Append::InPlace, Accumulator::AtomicInt64},
+                                      {Append::Atomic, Accumulator::PrivateInt64},
+                                      {Append::PrefixSum, Accumulator::AtomicPlanarInt64}}) {
                                     pool.append = append;
-                                    pool.accumulator =
-                                        append == Append::Atomic ? Accumulator::PrivateInt64 : Accumulator::AtomicInt64;
+                                    pool.accumulator = accumulator;
                                     list.push_back(knobs);
                                 }
                             }
@@ -161,7 +163,8 @@ TEST(PoolEquivalence, SharedPoolUnderContentionMakesOneImage) {
     settings.threads = 4;
     settings.schedule = {LoopSchedule::Kind::Dynamic, 1};
     for (const Append append : {Append::InPlace, Append::Atomic, Append::PrefixSum}) {
-        for (const Accumulator accumulator : {Accumulator::AtomicInt64, Accumulator::PrivateInt64}) {
+        for (const Accumulator accumulator :
+             {Accumulator::AtomicInt64, Accumulator::PrivateInt64, Accumulator::AtomicPlanarInt64}) {
             PoolSettings pool{.scope = PoolScope::Shared,
                               .refill = Refill::Regenerate,
                               .append = append,

@@ -91,7 +91,7 @@ TEST_P(Exact, SumsDoNotDependOnOrderNorOnContention) {
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
         Framebuffer out = framebuffer();
         const auto accumulator = make_accumulator<float>(GetParam(), out, kThreads);
-        add_all(*accumulator, out.fixed_point(), all, seed, GetParam() == Accumulator::OwnedInt64);
+        add_all(*accumulator, out.fixed_point(), all, seed, needs_owned_pixels(GetParam()));
         accumulator->finish();
         ASSERT_EQ(sums_of(out), expected);
     }
@@ -112,7 +112,8 @@ TEST_P(Exact, SumsLeaveBadSamplesOutWholeAndAccountForThem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Accumulators, Exact,
-                         testing::Values(Accumulator::OwnedInt64, Accumulator::AtomicInt64, Accumulator::PrivateInt64));
+                         testing::Values(Accumulator::OwnedInt64, Accumulator::AtomicInt64, Accumulator::PrivateInt64,
+                                         Accumulator::OwnedPlanarInt64, Accumulator::AtomicPlanarInt64));
 
 class Rounded : public testing::TestWithParam<std::pair<Accumulator, double>> {};
 
@@ -134,12 +135,32 @@ INSTANTIATE_TEST_SUITE_P(Accumulators, Rounded,
                          testing::Values(std::pair{Accumulator::AtomicFloat, 1e-4},
                                          std::pair{Accumulator::AtomicDouble, 1e-9}));
 
+TEST(Layouts, KeepEverySumOfEveryPixelInAPlaceOfItsOwn) {
+    std::vector<std::int64_t> sums(3 * kPixels);
+    const auto places = [&](const auto& layout) {
+        std::vector<std::ptrdiff_t> all;
+        for (std::size_t pixel = 0; pixel < kPixels; ++pixel)
+            for (int k = 0; k < 3; ++k) all.push_back(&layout.at(pixel, k) - sums.data());
+        return all;
+    };
+    std::vector<std::ptrdiff_t> expected(sums.size());
+    std::iota(expected.begin(), expected.end(), std::ptrdiff_t{0});
+    EXPECT_EQ(places(Interleaved{sums.data()}), expected);
+    std::vector<std::ptrdiff_t> planar = places(Planar{sums.data(), kPixels});
+    EXPECT_EQ(planar[1] - planar[0], std::ptrdiff_t{kPixels}) << "green is in the next plane";
+    EXPECT_EQ(planar[3] - planar[0], 1) << "the next pixel is the neighbour";
+    std::sort(planar.begin(), planar.end());
+    EXPECT_EQ(planar, expected);
+}
+
 TEST(Accumulators, SayHowMuchMemoryTheyTakeBesideTheFramebuffer) {
     Framebuffer out = framebuffer();
     const auto bytes = [&](Accumulator kind) { return make_accumulator<float>(kind, out, kThreads)->bytes(); };
     EXPECT_EQ(bytes(Accumulator::OwnedInt64), 0U);
     EXPECT_EQ(bytes(Accumulator::AtomicInt64), 0U);
     EXPECT_EQ(bytes(Accumulator::PrivateInt64), kThreads * 3 * kPixels * sizeof(std::int64_t));
+    EXPECT_EQ(bytes(Accumulator::OwnedPlanarInt64), 3 * kPixels * sizeof(std::int64_t));
+    EXPECT_EQ(bytes(Accumulator::AtomicPlanarInt64), 3 * kPixels * sizeof(std::int64_t));
     EXPECT_EQ(bytes(Accumulator::AtomicFloat), 3 * kPixels * sizeof(float));
     EXPECT_EQ(bytes(Accumulator::AtomicDouble), 3 * kPixels * sizeof(double));
 }

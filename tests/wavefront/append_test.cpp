@@ -79,7 +79,9 @@ class Rounds {
 #pragma omp for schedule(dynamic) nowait
                 for (std::int64_t b = 0; b < pool_->batch_count(); ++b) worker.treat(b, takes_camera);
 #pragma omp barrier
-                pool_->end_round();
+                pool_->end_round([] {
+#pragma omp barrier
+                });
 #pragma omp barrier
                 is_done = pool_->is_empty() && camera_.is_done();
 #pragma omp single

@@ -18,7 +18,7 @@ RenderSettings settings_of(std::int64_t spp, std::int32_t depth, int threads = 1
     settings.end_sample = spp;
     settings.depth = depth;
     settings.threads = threads;
-    settings.count_work = true;
+    settings.count_work = settings.log_rounds = true;
     return settings;
 }
 
@@ -145,14 +145,54 @@ TEST_P(Report, IsOfOneSegmentAPathAtDepthOneAndOfNoneAtDepthZero) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Report, testing::Values("paper", "cornell", "mirror_corridor"),
                          [](const auto& test) { return std::string(test.param); });
 
-TEST(RoundsReport, IsEmptyUnlessWorkIsCounted) {
+TEST(RoundsReport, IsEmptyUnlessRoundsAreLogged) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 16));
     RenderSettings settings = settings_of(1, 50);
+    settings.log_rounds = false;
+    EXPECT_TRUE(render_pool(scene, settings, shared_pool()).report.rounds.empty());
     settings.count_work = false;
     const Rendered got = render_pool(scene, settings, shared_pool());
     EXPECT_TRUE(got.report.rounds.empty());
     EXPECT_EQ(got.report.record_bytes, 56U);
     EXPECT_EQ(got.report.segments(), render_recursive(scene, settings).report.segments());
+}
+
+TEST(RoundsReport, NeedsNoCountingOfWork) {
+    const CompiledScene<float> scene = compile<float>(small_scene("cornell", 16));
+    RenderSettings settings = settings_of(2, 50, 2);
+    settings.count_work = false;
+    for (const Variant& variant : variants()) {
+        SCOPED_TRACE(variant.name);
+        const RenderReport got = render_pool(scene, settings, variant.pool).report;
+        const std::int64_t in_registers = variant.pool.camera == CameraStage::Fused ? got.paths() : 0;
+        EXPECT_EQ(sum(got, &RoundWork::records_in), got.segments() - in_registers);
+        EXPECT_EQ(got.total(&ThreadWork::box_tests) + got.total(&ThreadWork::primitive_tests), 0);
+    }
+}
+
+TEST(RoundsReport, HasTimeInTheStagesThatRanAndInNoOther) {
+    const CompiledScene<float> scene = compile<float>(small_scene("glass_stack", 24));
+    for (const int split_depth : {0, 2}) {
+        for (const Variant& variant : variants()) {
+            SCOPED_TRACE(fmt::format("{}, split depth {}", variant.name, split_depth));
+            RenderSettings settings = settings_of(4, 50, 2);
+            settings.split_depth = split_depth;
+            const RenderReport report = render_pool(scene, settings, variant.pool).report;
+            const auto seconds = [&](Stage stage) {
+                double all = 0;
+                for (const RoundWork& round : report.rounds) all += round.stage_s[static_cast<std::size_t>(stage)];
+                return all;
+            };
+            for (const Stage stage : {Stage::Generate, Stage::Intersect, Stage::Shade, Stage::Accumulate})
+                EXPECT_GT(seconds(stage), 0) << kStageNames[static_cast<std::size_t>(stage)];
+            EXPECT_EQ(seconds(Stage::Sort) > 0, variant.pool.sort == Sort::Material);
+            EXPECT_EQ(seconds(Stage::Append) > 0, variant.pool.scope == PoolScope::Shared || split_depth > 0);
+            double all = 0;
+            for (std::size_t i = 0; i < kStageCount; ++i) all += seconds(static_cast<Stage>(i));
+            for (const RoundWork& round : report.rounds) all += round.wait_s;
+            EXPECT_LE(all, settings.threads * report.seconds) << "some time was counted twice";
+        }
+    }
 }
 
 TEST(Progress, ReachesTheNumberOfPathsAtAnyDepthAndInAnyPool) {
@@ -256,18 +296,20 @@ INSTANTIATE_TEST_SUITE_P(Depths, Splitting, testing::Values(1, 2, 7));
 
 TEST(OwnedAccumulator, IsRefusedWithASharedPoolBeforeAnythingIsAdded) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 8));
-    PoolSettings pool = shared_pool();
-    pool.accumulator = Accumulator::OwnedInt64;
-    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(1, scene.max_radiance));
-    const std::string before = framebuffer.hash();
-    try {
-        WavefrontEngine(pool).render(scene, settings_of(1, 50), framebuffer);
-        FAIL() << "rendered";
-    } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("--accumulator"), std::string::npos) << error.what();
-        EXPECT_NE(std::string(error.what()).find("--pool-scope"), std::string::npos) << error.what();
+    for (const Accumulator accumulator : {Accumulator::OwnedInt64, Accumulator::OwnedPlanarInt64}) {
+        PoolSettings pool = shared_pool();
+        pool.accumulator = accumulator;
+        Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(1, scene.max_radiance));
+        const std::string before = framebuffer.hash();
+        try {
+            WavefrontEngine(pool).render(scene, settings_of(1, 50), framebuffer);
+            FAIL() << "rendered";
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("--accumulator"), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find("--pool-scope"), std::string::npos) << error.what();
+        }
+        EXPECT_EQ(framebuffer.hash(), before);
     }
-    EXPECT_EQ(framebuffer.hash(), before);
 }
 
 TEST(RoundedAccumulators, MakeAnImageThatIsOnlyClose) {

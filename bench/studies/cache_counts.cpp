@@ -1,0 +1,143 @@
+#include "bench/studies/cache_counts.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/studies/process.h"
+#include "core/environment.h"
+
+namespace raypool::studies {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// A folder that goes when this does.
+class ScratchFolder {
+  public:
+    ScratchFolder() {
+        std::string name = (fs::temp_directory_path() / "raypool-XXXXXX").string();
+        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot make the folder");
+        path_ = name;
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    ~ScratchFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    [[nodiscard]] std::string file(const char* name) const { return (path_ / name).string(); }
+
+  private:
+    fs::path path_;
+};
+
+json read_json(const std::string& path) {
+    std::ifstream file(path);
+    return json::parse(file, nullptr, false);
+}
+
+bool has_valgrind() {
+    std::istringstream folders(std::getenv("PATH") == nullptr ? "" : std::getenv("PATH"));
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (access((folder + "/valgrind").c_str(), X_OK) == 0) return true;
+    return false;
+}
+
+/// The commit that a raypool command was built of; empty where it cannot be told.
+std::string commit_of(const fs::path& command) {
+    const ScratchFolder scratch;
+    const std::string stats = scratch.file("stats.json");
+    const int status = run_process(
+        {command.string(), "render", "--width", "1", "--spp", "1", "--threads", "1", "--quiet", "--stats", stats});
+    const json found = status == 0 ? read_json(stats) : json();
+    return found.is_object() ? found.value(json::json_pointer("/environment/commit"), std::string()) : std::string();
+}
+
+CachegrindCommand find_command() {
+    if (!has_valgrind()) return {{}, "valgrind is not installed"};
+    const fs::path own = fs::read_symlink("/proc/self/exe");
+#ifdef __AVX512F__
+    const fs::path twin = own.parent_path() / "../../portable/cli/raypool";
+    if (!fs::exists(twin)) return {{}, "valgrind knows no AVX-512: build the preset portable"};
+    if (commit_of(twin) != environment_json().at("commit").get<std::string>())
+        return {{}, "the build of the preset portable is of another commit: build it again"};
+    return {fs::canonical(twin), ""};
+#else
+    return {own, ""};
+#endif
+}
+
+}  // namespace
+
+const CachegrindCommand& cachegrind_command() {
+    static const CachegrindCommand command = find_command();
+    return command;
+}
+
+CacheCounts read_cachegrind(std::istream& file, const std::function<bool(const std::string&)>& is_wanted) {
+    std::vector<std::string> events;
+    std::map<std::string, std::int64_t> sums;
+    bool is_inside = false;
+    for (std::string line; std::getline(file, line);) {
+        std::istringstream words(line.substr(line.find_first_of(" =:") + 1));
+        if (line.starts_with("events:")) {
+            for (std::string event; words >> event;) events.push_back(event);
+        } else if (line.starts_with("fn=")) {
+            is_inside = is_wanted(line.substr(3));
+        } else if (is_inside && !line.empty() && line.front() >= '0' && line.front() <= '9') {
+            std::int64_t count = 0;
+            for (std::size_t i = 0; i < events.size() && words >> count; ++i) sums[events[i]] += count;
+        }
+    }
+    const auto sum = [&](const char* event) {
+        if (std::find(events.begin(), events.end(), event) == events.end())
+            throw std::runtime_error(fmt::format("cachegrind counted no {}", event));
+        return sums[event];
+    };
+    return {sum("Dr"), sum("Dw"), sum("D1mr"), sum("D1mw"), sum("DLmr"), sum("DLmw")};
+}
+
+Cachegrind run_cachegrind(const std::vector<std::string>& arguments) {
+    const ScratchFolder scratch;
+    const std::string counts = scratch.file("counts");
+    const std::string stats = scratch.file("stats.json");
+    std::vector<std::string> all{"valgrind",
+                                 "--tool=cachegrind",
+                                 "--cache-sim=yes",
+                                 std::string("--D1=") + kSimulatedD1,
+                                 std::string("--LL=") + kSimulatedLl,
+                                 "--cachegrind-out-file=" + counts,
+                                 "--log-file=" + scratch.file("log"),
+                                 cachegrind_command().path.string(),
+                                 "render"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    all.insert(all.end(), {"--quiet", "--stats", stats});
+    if (const int status = run_process(all); status != 0)
+        throw std::runtime_error(fmt::format("valgrind --tool=cachegrind: exit status {}", status));
+
+    const auto is_engine = [](const std::string& name) {
+        return name.find("raypool::wavefront::") != std::string::npos && name.find("::finish(") == std::string::npos;
+    };
+    const auto is_adding = [&](const std::string& name) {
+        return is_engine(name) && name.find("Int64<") != std::string::npos && name.find("::add(") != std::string::npos;
+    };
+    const auto read = [&](const auto& is_wanted) {
+        std::ifstream file(counts);
+        return read_cachegrind(file, is_wanted);
+    };
+    const json found = read_json(stats);
+    if (!found.is_object()) throw std::runtime_error("valgrind --tool=cachegrind: the command wrote no statistics");
+    return {read(is_engine), read(is_adding), found.at("hash").get<std::string>()};
+}
+
+}  // namespace raypool::studies

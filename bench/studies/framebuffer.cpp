@@ -1,0 +1,229 @@
+// Sums of a pixel side by side, or in three planes: the paper's Figure 11, in time and in cache misses.
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "bench/studies/cache_counts.h"
+#include "bench/studies/framebuffer_summary.h"
+#include "bench/studies/renders.h"
+#include "bench/studies/studies.h"
+#include "core/settings_text.h"
+#include "wavefront/engine.h"
+#include "wavefront/setting_names.h"
+
+namespace raypool::studies {
+
+namespace {
+
+using wavefront::Accumulator;
+using wavefront::PoolSettings;
+
+/// A pool whose accumulator has both layouts.
+struct Pair {
+    const char* name;
+    PoolSettings pool;
+    Accumulator planar;
+};
+std::vector<Pair> pairs() {
+    return {{"a pool for each thread", rung_settings("fused", 1), Accumulator::OwnedPlanarInt64},
+            {kSharedPool, rung_settings("shared-stream", 1), Accumulator::AtomicPlanarInt64}};
+}
+PoolSettings in_layout(const Pair& pair, const char* layout) {
+    PoolSettings pool = pair.pool;
+    if (layout == std::string_view(kPlanar)) pool.accumulator = pair.planar;
+    return pool;
+}
+
+Value or_null(const std::optional<std::int64_t>& count) {
+    return count ? Value(*count) : Value(nullptr);
+}
+
+/// The columns behind those of every render.
+Row cells(const StudyScene& scene, const RenderSettings& settings, const char* layout, const char* source,
+          const Value& part, const CacheCounts& counts) {
+    return {layout,
+            3 * sizeof(std::int64_t) * static_cast<std::size_t>(scene.compiled.pixel_count()),
+            scene.compiled.pixel_count() * settings.end_sample,
+            source,
+            part,
+            or_null(counts.reads),
+            or_null(counts.writes),
+            or_null(counts.d1_read_misses),
+            or_null(counts.d1_write_misses),
+            or_null(counts.ll_read_misses),
+            or_null(counts.ll_write_misses)};
+}
+
+/// Arguments of `raypool render`.
+std::vector<std::string> render_arguments(const std::string& scene, std::int64_t width, const RenderSettings& settings,
+                                          const PoolSettings& pool) {
+    return {scene,
+            "--engine=wavefront",
+            fmt::format("--width={}", width),
+            fmt::format("--spp={}", settings.end_sample),
+            fmt::format("--depth={}", settings.depth),
+            fmt::format("--seed={}", settings.seed),
+            fmt::format("--threads={}", settings.threads),
+            "--schedule=" + to_string(settings.schedule),
+            "--grain=" + to_string(settings.grain),
+            fmt::format("--pool-scope={}", to_string(pool.scope)),
+            fmt::format("--refill={}", to_string(pool.refill)),
+            fmt::format("--stage-width={}", to_string(pool.width)),
+            fmt::format("--intersect={}", to_string(pool.intersection)),
+            fmt::format("--camera={}", to_string(pool.camera)),
+            fmt::format("--sort={}", to_string(pool.sort)),
+            fmt::format("--append={}", to_string(pool.append)),
+            fmt::format("--accumulator={}", to_string(pool.accumulator)),
+            fmt::format("--pool-rays={}", pool.capacity),
+            fmt::format("--pool-batch={}", pool.batch)};
+}
+
+Case time_case(const Pair& pair, const char* layout, const std::shared_ptr<const StudyScene>& scene,
+               const RenderSettings& settings, int repeats) {
+    const auto engine = std::make_shared<wavefront::WavefrontEngine>(in_layout(pair, layout));
+    return render_case(
+        fmt::format("time: {}, {}, width {}, {} threads", pair.name, layout, scene->compiled.width, settings.threads),
+        {pair.name, engine}, scene, settings, repeats, cells(*scene, settings, layout, "clock", nullptr, {}));
+}
+
+/// Rows of counts have no time: counting disturbs it.
+Row count_row(const char* engine, const StudyScene& scene, const RenderSettings& settings, const std::string& hash,
+              const Row& behind) {
+    Row row{engine,
+            settings.threads,
+            to_string(settings.schedule),
+            to_string(settings.grain),
+            scene.compiled.width,
+            nullptr,
+            nullptr,
+            nullptr,
+            nullptr,
+            hash};
+    row.insert(row.end(), behind.begin(), behind.end());
+    return row;
+}
+
+Case hardware_case(const Pair& pair, const char* layout, const std::shared_ptr<const StudyScene>& scene,
+                   const RenderSettings& settings, int repeats) {
+    const auto run = [pair, layout, scene, settings]() -> std::vector<Row> {
+        std::string hash;
+        const auto counts = count_by_hardware(
+            [&] { hash = measure(wavefront::WavefrontEngine(in_layout(pair, layout)), *scene, settings).hash; });
+        return {
+            count_row(pair.name, *scene, settings, hash,
+                      cells(*scene, settings, layout, "hardware counters", "render", counts.value_or(CacheCounts{})))};
+    };
+    return {fmt::format("counters: {}, {}, width {}", pair.name, layout, scene->compiled.width),
+            image_of(*scene, settings), repeats, run};
+}
+
+Case cachegrind_case(const Pair& pair, const char* layout, const std::string& file,
+                     const std::shared_ptr<const StudyScene>& scene, const RenderSettings& settings) {
+    const auto run = [pair, layout, file, scene, settings]() -> std::vector<Row> {
+        const Cachegrind found =
+            run_cachegrind(render_arguments(file, scene->compiled.width, settings, in_layout(pair, layout)));
+        const auto row = [&](const char* part, const CacheCounts& counts) {
+            return count_row(pair.name, *scene, settings, found.hash,
+                             cells(*scene, settings, layout, "cachegrind", part, counts));
+        };
+        return {row("render", found.rendering), row("accumulate", found.accumulating)};
+    };
+    return {fmt::format("cachegrind: {}, {}, width {}", pair.name, layout, scene->compiled.width),
+            image_of(*scene, settings), 1, run};
+}
+
+class FramebufferLayout : public Study {
+  public:
+    [[nodiscard]] std::string name() const override { return "framebuffer"; }
+    [[nodiscard]] std::string question() const override {
+        return "Do a pixel's sums side by side save time or cache misses over three planes?";
+    }
+    [[nodiscard]] std::vector<Column> columns() const override {
+        std::vector<Column> columns = render_columns();
+        columns.insert(
+            columns.end(),
+            {{"layout", ColumnType::Text, "interleaved: a pixel's three sums side by side; planar: in three planes"},
+             {"framebuffer_bytes", ColumnType::Count, "of all sums, 8 bytes each"},
+             {"paths", ColumnType::Count, "samples rendered"},
+             {"source", ColumnType::Text, "clock, hardware counters, or cachegrind (a simulation)"},
+             {"part", ColumnType::Text, "what was counted: render (the engine), or of that accumulate"},
+             {"data_reads", ColumnType::Count, ""},
+             {"data_writes", ColumnType::Count, ""},
+             {"d1_read_misses", ColumnType::Count, "of the first-level cache"},
+             {"d1_write_misses", ColumnType::Count, "of the first-level cache"},
+             {"ll_read_misses", ColumnType::Count, "of the last-level cache; cachegrind's is the second level"},
+             {"ll_write_misses", ColumnType::Count, "of the last-level cache; cachegrind's is the second level"}});
+        return columns;
+    }
+
+    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
+        const std::int64_t width = choose(options.width, options.is_quick, 800, 800);
+        const std::int64_t spp = choose(options.spp, options.is_quick, 1, 4);
+        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 5, 9));
+        const int most = static_cast<int>(choose(options.threads, false, 0, core_count()));
+        RenderSettings settings;
+        settings.depth = static_cast<std::int32_t>(choose(options.depth, options.is_quick, 50, 50));
+        settings.seed = options.seed;
+        settings.schedule = parse_schedule("dynamic");
+        const auto each_layout = [&](const auto& scene, std::int64_t samples, const auto& add) {
+            settings.end_sample = samples;
+            for (const Pair& pair : pairs())
+                for (const char* layout : {kInterleaved, kPlanar}) add(pair, layout, scene);
+        };
+
+        // Time: one image smaller than the second-level cache and one larger, with as many paths.
+        std::vector<Case> cases;
+        const auto large = study_scene(options.scene, width);
+        const auto small = study_scene(options.scene, std::max<std::int64_t>(width / kSmaller, 1));
+        for (const int threads : one_and_all(most)) {
+            settings.threads = threads;
+            const auto add = [&](const Pair& pair, const char* layout, const auto& scene) {
+                cases.push_back(time_case(pair, layout, scene, settings, repeats));
+            };
+            each_layout(small, spp * kSmaller * kSmaller, add);
+            each_layout(large, spp, add);
+        }
+
+        // Misses, of one thread.
+        settings.threads = 1;
+        if (has_hardware_counters()) {
+            const auto add = [&](const Pair& pair, const char* layout, const auto& scene) {
+                cases.push_back(hardware_case(pair, layout, scene, settings, repeats));
+            };
+            each_layout(small, spp * kSmaller * kSmaller, add);
+            each_layout(large, spp, add);
+        } else if (cachegrind_command().why.empty()) {
+            const auto add = [&](const Pair& pair, const char* layout, const auto& scene) {
+                cases.push_back(cachegrind_case(pair, layout, options.scene, scene, settings));
+            };
+            const std::int64_t most_width = std::min(width, kSimulatedWidth);
+            if (!options.is_quick)
+                each_layout(study_scene(options.scene, std::max<std::int64_t>(most_width * 2 / 5, 1)), 2, add);
+            each_layout(study_scene(options.scene, most_width), options.is_quick ? 1 : 2, add);
+        }
+        return cases;
+    }
+
+    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions&) const override {
+        return summarise_framebuffer(data);
+    }
+
+  private:
+    static constexpr std::int64_t kSmaller = 5;           ///< times as wide is the large image
+    static constexpr std::int64_t kSimulatedWidth = 320;  ///< whose sums are just too large for kSimulatedLl
+
+    static bool has_hardware_counters() {
+        return count_by_hardware([] {}).has_value();
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<Study> framebuffer_study() {
+    return std::make_unique<FramebufferLayout>();
+}
+
+}  // namespace raypool::studies

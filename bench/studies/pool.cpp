@@ -1,0 +1,206 @@
+// How large a pool must be, whose, and refilled when, to beat recursion: the paper's Figure 8 and the axes around it.
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bench/studies/pool_summary.h"
+#include "bench/studies/renders.h"
+#include "bench/studies/studies.h"
+#include "core/settings_text.h"
+#include "wavefront/engine.h"
+#include "wavefront/ladder.h"
+#include "wavefront/setting_names.h"
+
+namespace raypool::studies {
+
+namespace {
+
+using wavefront::PoolScope;
+using wavefront::PoolSettings;
+using wavefront::Refill;
+using wavefront::Sort;
+
+/// A pool whose capacity is left open: a line of the picture.
+struct Line {
+    std::string name;
+    PoolSettings pool;
+};
+
+/// The paper's pool as it stands; then scope by refill, all else equal; then the fastest.
+std::vector<Line> lines() {
+    std::vector<Line> lines;
+    PoolSettings wide = rung_settings("shared-stream", 1);
+    lines.push_back({kPaperPool, rung_settings("shared", 1)});
+    lines.push_back({kWidePool, wide});
+    wide.refill = Refill::Regenerate;
+    lines.push_back({"shared, regenerate", wide});
+    lines.push_back({"thread, drain", rung_settings("thread-small", 1)});
+    lines.push_back({"thread, regenerate", rung_settings("regenerate", 1)});
+    lines.push_back({kFastestPool, rung_settings("fused", 1)});
+    return lines;
+}
+
+/// A batch that leaves each thread at least two of a shared pool, up to the default.
+std::int64_t batch_for(std::int64_t capacity, int threads) {
+    const std::int64_t share = threads == 1 ? capacity : capacity / (2 * threads);
+    return std::clamp<std::int64_t>(share, 16, PoolSettings{}.batch);
+}
+
+/// From 64 to a record for every path of the render.
+std::vector<std::int64_t> capacities(std::int64_t paths, std::int64_t factor) {
+    std::vector<std::int64_t> list;
+    for (std::int64_t capacity = 64; capacity < paths; capacity *= factor) list.push_back(capacity);
+    list.push_back(paths);
+    return list;
+}
+
+/// The columns behind those of every render, of which `axis` says what a row is for.
+Row pool_cells(const std::string& axis, const PoolSettings& pool) {
+    return {axis,
+            to_string(pool.scope),
+            to_string(pool.refill),
+            to_string(pool.camera),
+            to_string(pool.width),
+            to_string(pool.sort),
+            pool.capacity,
+            pool.batch};
+}
+constexpr std::size_t kPoolCells = 8;
+constexpr std::size_t kRoundCells = 5;
+
+Case pool_case(const std::string& axis, const Line& line, const std::shared_ptr<const StudyScene>& scene,
+               const RenderSettings& settings, int repeats) {
+    Row cells = pool_cells(axis, line.pool);
+    cells.insert(cells.end(), kRoundCells, nullptr);
+    return render_case(fmt::format("{}: {}, {} records, sort {}, batch {}, {} threads", axis, line.name,
+                                   line.pool.capacity, to_string(line.pool.sort), line.pool.batch, settings.threads),
+                       {line.name, std::make_shared<wavefront::WavefrontEngine>(line.pool)}, scene, settings, repeats,
+                       cells);
+}
+
+/// A row for each round in which records were advanced. After a round without any, a pool that drains is full again:
+/// `depth` counts from there.
+Case rounds_case(const Line& line, const std::shared_ptr<const StudyScene>& scene, RenderSettings settings) {
+    settings.log_rounds = true;
+    const auto run = [line, scene, settings]() {
+        const Measured measured = measure(wavefront::WavefrontEngine(line.pool), *scene, settings);
+        std::vector<Row> rows;
+        std::int64_t round = 0;
+        std::int64_t depth = 0;
+        for (const RoundWork& work : measured.report.rounds) {
+            depth = work.records_in == 0 ? 0 : depth + 1;
+            ++round;
+            if (work.records_in == 0) continue;
+            Row row = render_row(line.name, *scene, settings, measured);
+            for (const Value& cell : pool_cells("rounds", line.pool)) row.push_back(cell);
+            row.insert(row.end(), {round, line.pool.refill == Refill::Drain ? Value(depth) : Value(nullptr),
+                                   work.records_in, work.records_out, work.lanes});
+            rows.push_back(std::move(row));
+        }
+        return rows;
+    };
+    return {fmt::format("rounds: {}", line.name), image_of(*scene, settings), 1, run};
+}
+
+class Pool : public Study {
+  public:
+    [[nodiscard]] std::string name() const override { return "pool"; }
+    [[nodiscard]] std::string question() const override {
+        return "From what capacity on does a pool beat recursion, and what do scope, refill, sorting and batches "
+               "matter?";
+    }
+    [[nodiscard]] std::vector<Column> columns() const override {
+        std::vector<Column> columns = render_columns();
+        columns.insert(
+            columns.end(),
+            {{"axis", ColumnType::Text, "what the row is for: recursion, capacity, sort, batch or rounds"},
+             {"scope", ColumnType::Text, "one pool shared by all threads, or one for each thread"},
+             {"refill", ColumnType::Text, "camera rays enter the empty pool (drain), or as soon as there is room"},
+             {"camera", ColumnType::Text, "camera rays enter at once (staged) or after their first bounce (fused)"},
+             {"stage_width", ColumnType::Text, "a ray at a time (scalar) or a register of them (simd)"},
+             {"sort", ColumnType::Text, "order of records before shading"},
+             {"capacity", ColumnType::Count, "records, of each pool"},
+             {"batch", ColumnType::Count, "records that a thread takes at a time from a shared pool"},
+             {"round", ColumnType::Count, "number of the round"},
+             {"depth", ColumnType::Count, "rounds since the pool was filled, of a pool that drains"},
+             {"records_in", ColumnType::Count, "records advanced in the round"},
+             {"records_out", ColumnType::Count, "of these, alive afterwards"},
+             {"lanes", ColumnType::Count, "lanes of registers used for them"}});
+        return columns;
+    }
+
+    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
+        const auto scene = study_scene(options.scene, choose(options.width, options.is_quick, 200, 400));
+        RenderSettings settings;
+        settings.end_sample = choose(options.spp, options.is_quick, 4, 8);
+        settings.depth = static_cast<std::int32_t>(choose(options.depth, options.is_quick, 50, 50));
+        settings.seed = options.seed;
+        settings.schedule = parse_schedule("dynamic");
+        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 3, 5));
+        const int most = static_cast<int>(choose(options.threads, false, 0, core_count()));
+        const std::int64_t paths = scene->compiled.pixel_count() * settings.end_sample;
+
+        std::vector<Case> cases;
+        for (const int threads : one_and_all(most)) {
+            settings.threads = threads;
+            Row recursion{"recursion"};
+            recursion.insert(recursion.end(), kPoolCells - 1 + kRoundCells, nullptr);
+            cases.push_back(render_case(fmt::format("recursive, {} threads", threads), recursive_engine(), scene,
+                                        settings, repeats, recursion));
+            for (Line line : lines()) {
+                for (const std::int64_t capacity : capacities(paths, options.is_quick ? 16 : 4)) {
+                    line.pool.capacity = capacity;
+                    line.pool.batch = batch_for(capacity, threads);
+                    cases.push_back(pool_case("capacity", line, scene, settings, repeats));
+                }
+            }
+            for (Line line : lines()) {
+                if (line.name == kPaperPool) continue;
+                for (const Sort sort : {Sort::None, Sort::Material}) {
+                    line.pool.sort = sort;
+                    cases.push_back(pool_case("sort", line, scene, settings, repeats));
+                }
+            }
+        }
+        for (Line line : lines()) {
+            if (line.pool.scope != PoolScope::Shared || line.name == kPaperPool) continue;
+            for (const std::int64_t batch : {256, 1024, 4096, 16384}) {
+                line.pool.batch = batch;
+                cases.push_back(pool_case("batch", line, scene, settings, repeats));
+            }
+        }
+        add_rounds(cases, scene, settings);
+        return cases;
+    }
+
+    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions&) const override {
+        return summarise_pool(data);
+    }
+
+  private:
+    /// Of a drained and a regenerating pool, over a few fillings.
+    static void add_rounds(std::vector<Case>& cases, const std::shared_ptr<const StudyScene>& scene,
+                           RenderSettings settings) {
+        constexpr std::int64_t kFillings = 4;
+        const std::int64_t pixels = scene->compiled.pixel_count();
+        settings.threads = 1;  // so that every run has the same rounds
+        settings.end_sample =
+            std::clamp<std::int64_t>(kFillings * PoolSettings::kSharedCapacity / pixels, 1, settings.end_sample);
+        for (Line line : lines()) {
+            if (line.pool.scope != PoolScope::Shared || line.name == kPaperPool) continue;
+            line.pool.capacity =
+                std::clamp<std::int64_t>(pixels * settings.end_sample / kFillings, 64, PoolSettings::kSharedCapacity);
+            cases.push_back(rounds_case(line, scene, settings));
+        }
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<Study> pool_study() {
+    return std::make_unique<Pool>();
+}
+
+}  // namespace raypool::studies

@@ -1,0 +1,14 @@
+/// Other programs that a study calls: python for its pictures, valgrind for its counts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace raypool::studies {
+
+/// Runs a program, found in PATH where its name has no slash, and waits for it. Its standard output and error are
+/// ours. It is out of reach of the terminal's Ctrl-C, so that a study that is stopped can finish its case. Returns the
+/// exit status, or 128 and the signal that ended it. Throws std::runtime_error where it cannot be started.
+int run_process(const std::vector<std::string>& arguments);
+
+}  // namespace raypool::studies

@@ -1,0 +1,24 @@
+/// Verdicts over ratios: a claim is decided only where all runs are on one side of what it claims.
+#pragma once
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "bench/studies/statistics.h"
+#include "bench/studies/study.h"
+
+namespace raypool::studies {
+
+/// Whether a ratio is at least `least`.
+inline Verdict is_at_least(const Spread& ratio, double least) {
+    return ratio.low >= least ? Verdict::Holds : ratio.high < least ? Verdict::DoesNotHold : Verdict::CannotTell;
+}
+
+/// Why is_at_least() could not tell; empty where it could.
+inline std::string why_open(const Spread& ratio, double least) {
+    return is_at_least(ratio, least) == Verdict::CannotTell ? fmt::format("the spread of the runs includes {:g}", least)
+                                                            : "";
+}
+
+}  // namespace raypool::studies
