@@ -104,6 +104,12 @@ void check_memory(const Scene& scene) {
                         scene.width, scene.height, bytes * 1e-9, machine * 1e-9));
 }
 
+/// Of the code that a scene runs on, which may be compiled for more than it needs.
+std::size_t stored_record_bytes(const Scene& scene, Precision precision) {
+    const SceneNeeds& needs = kCompiledNeeds[compiled_needs_index(scene_needs(scene))];
+    return ray_record_bytes(needs, precision == Precision::Double ? sizeof(double) : sizeof(float));
+}
+
 ImageAttributes image_attributes(const RenderRecord& record) {
     ImageAttributes attributes{{"raypool.hash", record.hash}};
     const nlohmann::json settings = settings_json(record);
@@ -202,7 +208,7 @@ void render(const RenderOptions& options) {
     check_memory(scene);
     CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;
-    record.pool = pool_settings(options.pool);
+    record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.precision));
     record.scene_name = scene.name;
     record.width = scene.width;
     record.height = scene.height;

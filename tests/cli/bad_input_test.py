@@ -130,7 +130,9 @@ class BadOption(CommandTest):
                 "--stats": ("",),
                 "--trace": ("",),
                 "--cost-image": ("out", "out.gif", "out.png.txt", ".png/", ""),
-                "--cost": ("time", "")}.items():
+                "--cost": ("time", ""),
+                "--pool-rays": ("0", "-1", "1.5", "0KB", "-1KB", "KB", "1kb", "1 KB", "1KB ", "1B", "1KiB", "0x1KB", "1e3",
+                                2**31, f"{2**31}KB", "99999999999999999999MB", "")}.items():
             for value in values:
                 with self.subTest(option=option, value=value):
                     named = option if option not in ("--output", "--cost-image") or value == "" else str(value)

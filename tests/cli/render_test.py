@@ -299,6 +299,18 @@ class CostImage(CommandTest):
         self.assertEqual(exr_attributes((self.folder / "cost.exr").read_bytes())["raypool.cost"], "segments")
 
 
+class PoolRays(CommandTest):
+    def test_may_be_bytes_of_whole_records(self):
+        # 52 and 88 bytes a record; quads and planes run on code for every feature, whose records have a time too.
+        for text, precision, rays in (("100", "float", 100), ("1KB", "float", 1024 // 56), ("2MB", "float", 2**21 // 56),
+                                      ("512KB", "double", 2**19 // 96)):
+            stats = self.stats("--spp", 1, "--engine", "wavefront", "--pool-rays", text, "--precision", precision)
+            self.assertEqual(stats["settings"]["pool"]["rays"], rays)
+        self.write("scene.json", changed(changed(SCENE, "/shapes/2"), "/shapes/1"))
+        stats = self.stats("--spp", 1, "--engine", "wavefront", "--pool-rays", "1KB")
+        self.assertEqual((stats["settings"]["pool"]["rays"], stats["record_bytes"]), (1024 // 52, 52))
+
+
 class Diff(CommandTest):
     def test_ends_with_zero_for_the_same_bits_and_with_one_for_others(self):
         for kind in ("exr", "pfm", "png"):
