@@ -1,10 +1,15 @@
 #include "cli/pool_options.h"
 
+#include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/error.h"
+#include "core/settings_text.h"
 #include "wavefront/setting_names.h"
 
 namespace raypool::cli {
@@ -38,13 +43,38 @@ void add_pool_options(CLI::App& command, PoolOptions& options) {
     add("--accumulator", options.accumulator, defaults.accumulator,
         "How radiance reaches the framebuffer (default: owned, of a shared pool atomic)");
     const auto count = CLI::Range(std::int64_t{1}, std::int64_t{std::numeric_limits<std::int32_t>::max()});
-    command.add_option("--pool-rays", options.rays, "Most records in a pool")->check(count)->group("Wavefront engine");
+    command
+        .add_option("--pool-rays", options.rays, "Most records in a pool, or the bytes that they may take: 512KB, 2MB")
+        ->check([](const std::string& text) {
+            parse_pool_rays(text, 1);
+            return std::string();
+        })
+        ->group("Wavefront engine");
     command.add_option("--pool-batch", options.batch, "Records that a thread takes at a time from a shared pool")
         ->check(count)
         ->group("Wavefront engine");
 }
 
-PoolSettings pool_settings(const PoolOptions& options) {
+std::int64_t parse_pool_rays(std::string_view text, std::size_t record_bytes) {
+    constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+    constexpr std::pair<std::string_view, int> kUnits[] = {{"KB", 10}, {"MB", 20}, {"GB", 30}};
+    std::string_view digits = text;
+    int shift = 0;
+    for (const auto& [unit, bits] : kUnits) {
+        if (!text.ends_with(unit)) continue;
+        digits.remove_suffix(unit.size());
+        shift = bits;
+    }
+    const auto number = parse_integer(digits, 1, kMost);
+    if (!number)
+        throw InputError(fmt::format(
+            "--pool-rays: must be a count of records in [1, {}], or their bytes as in 512KB, 2MB or 1GB, got {}", kMost,
+            text));
+    if (shift == 0) return *number;
+    return std::clamp<std::int64_t>((*number << shift) / static_cast<std::int64_t>(record_bytes), 1, kMost);
+}
+
+PoolSettings pool_settings(const PoolOptions& options, std::size_t record_bytes) {
     PoolSettings settings;
     set(settings.scope, options.scope);
     if (settings.scope == PoolScope::Shared) {
@@ -58,7 +88,7 @@ PoolSettings pool_settings(const PoolOptions& options) {
     set(settings.sort, options.sort);
     set(settings.append, options.append);
     set(settings.accumulator, options.accumulator);
-    if (options.rays != 0) settings.capacity = options.rays;
+    if (!options.rays.empty()) settings.capacity = parse_pool_rays(options.rays, record_bytes);
     if (options.batch != 0) settings.batch = options.batch;
     return settings;
 }

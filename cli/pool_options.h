@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
@@ -10,7 +11,7 @@
 
 namespace raypool::cli {
 
-/// What was asked for; a word that is empty, or a number that is 0, means the default.
+/// What was asked for; a text that is empty, or a number that is 0, means the default.
 struct PoolOptions {
     std::string scope;
     std::string refill;
@@ -20,14 +21,19 @@ struct PoolOptions {
     std::string sort;
     std::string append;
     std::string accumulator;
-    std::int64_t rays = 0;
+    std::string rays;  ///< a count of records, or the bytes that they may take: 512KB
     std::int64_t batch = 0;
 };
 
 void add_pool_options(CLI::App& command, PoolOptions& options);
 
-/// Defaults filled in. What is best for a shared pool differs from what is best for per-thread ones.
-wavefront::PoolSettings pool_settings(const PoolOptions& options);
+/// Most records in a pool: a count, or as many whole records as fit into so many bytes (KB, MB or GB of 1024), one at
+/// least. Refuses any other text.
+std::int64_t parse_pool_rays(std::string_view text, std::size_t record_bytes);
+
+/// Defaults filled in, for records of `record_bytes`. What is best for a shared pool differs from what is best for
+/// per-thread ones.
+wavefront::PoolSettings pool_settings(const PoolOptions& options, std::size_t record_bytes);
 
 nlohmann::json to_json(const wavefront::PoolSettings& settings);
 

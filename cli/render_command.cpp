@@ -13,10 +13,13 @@
 #include "cli/pool_options.h"
 #include "cli/progress_bar.h"
 #include "cli/stats_json.h"
+#include "core/cost_image.h"
 #include "core/error.h"
+#include "core/heat_map.h"
 #include "core/image_file.h"
 #include "core/output_file.h"
 #include "core/scene_reader.h"
+#include "core/trace.h"
 #include "recursive/engine.h"
 #include "wavefront/engine.h"
 
@@ -28,6 +31,9 @@ struct RenderOptions {
     std::string scene = "paper";
     std::string output;
     std::string stats;
+    std::string trace;
+    std::string cost_image;
+    std::string cost = "tests";
     std::string engine = "recursive";
     std::int64_t spp = 100;
     std::int64_t width = 0;  ///< 0: the scene's
@@ -64,6 +70,11 @@ std::unique_ptr<Engine> make_engine(const std::string& name, const wavefront::Po
     return std::make_unique<recursive::RecursiveEngine>();
 }
 
+Cost cost_of(const std::string& word) {
+    if (word == "segments") return Cost::Segments;
+    return word == "ns" ? Cost::Nanoseconds : Cost::Tests;
+}
+
 RenderSettings render_settings(const RenderOptions& options) {
     RenderSettings settings;
     settings.end_sample = options.spp;
@@ -78,7 +89,8 @@ RenderSettings render_settings(const RenderOptions& options) {
     settings.threads = thread_count(options.threads);
     settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
     settings.grain = parse_grain(options.grain);
-    settings.count_work = settings.log_rounds = options.count_work;
+    settings.count_work = options.count_work || (!options.cost_image.empty() && cost_of(options.cost) == Cost::Tests);
+    settings.log_rounds = options.count_work;
     return settings;
 }
 
@@ -92,12 +104,26 @@ void check_memory(const Scene& scene) {
                         scene.width, scene.height, bytes * 1e-9, machine * 1e-9));
 }
 
+/// Of the code that a scene runs on, which may be compiled for more than it needs.
+std::size_t stored_record_bytes(const Scene& scene, Precision precision) {
+    const SceneNeeds& needs = kCompiledNeeds[compiled_needs_index(scene_needs(scene))];
+    return ray_record_bytes(needs, precision == Precision::Double ? sizeof(double) : sizeof(float));
+}
+
 ImageAttributes image_attributes(const RenderRecord& record) {
     ImageAttributes attributes{{"raypool.hash", record.hash}};
     const nlohmann::json settings = settings_json(record);
     for (const auto& [key, value] : settings.items())
         attributes["raypool." + key] = value.is_string() ? value.get<std::string>() : value.dump();
     return attributes;
+}
+
+/// The values, or, where the format has no room for them, a picture of them.
+void write_cost_image(const RenderOptions& options, const CostImage& cost, const RenderRecord& record) {
+    ImageAttributes attributes = image_attributes(record);
+    attributes["raypool.cost"] = options.cost;
+    const bool is_picture = image_format(options.cost_image) == ImageFormat::Png;
+    write_image(options.cost_image, is_picture ? heat_map(cost) : cost.image(), attributes);
 }
 
 void print_summary(const RenderRecord& record) {
@@ -124,6 +150,14 @@ void print_summary(const RenderRecord& record) {
         fmt::print("bad samples: {} not finite and left out, {} channels cut (radiance {:.6g} in all)\n",
                    report.audit.non_finite, report.audit.clamped, report.audit.clamped_energy);
     fmt::print("hash {}\n", record.hash);
+}
+
+void print_trace(const std::string& file, const Trace& trace) {
+    fmt::print("{}: {} events", file, trace.event_count());
+    if (trace.dropped_count() > 0)
+        fmt::print(", and {} that are left out: the trace ends early, with {} events of a thread",
+                   trace.dropped_count(), Trace::kMostEvents);
+    fmt::print("\n");
 }
 
 template <class Scalar>
@@ -153,17 +187,28 @@ void render(const RenderOptions& options) {
     record.spp = options.spp;
     record.precision = options.precision == "double" ? Precision::Double : Precision::Float;
     record.engine = options.engine;
-    record.pool = pool_settings(options.pool);
     if (!options.output.empty()) {
         image_format(options.output);
         check_writable(options.output);
     }
     if (!options.stats.empty()) check_writable(options.stats);
+    if (!options.cost_image.empty()) {
+        image_format(options.cost_image);
+        check_writable(options.cost_image);
+    }
+    Trace trace;
+    if (!options.trace.empty()) {
+        check_writable(options.trace);
+        record.settings.trace = &trace;
+    }
 
     Stopwatch watch;
     Scene scene = load_scene(options.scene);
     if (options.width != 0) set_width(scene, options.width);
     check_memory(scene);
+    CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
+    if (!options.cost_image.empty()) record.settings.cost_image = &cost;
+    record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.precision));
     record.scene_name = scene.name;
     record.width = scene.width;
     record.height = scene.height;
@@ -176,10 +221,14 @@ void render(const RenderOptions& options) {
     record.write_s = watch.seconds();
     record.total_s = total.seconds();
     if (!options.stats.empty()) write_json(options.stats, stats_json(record));
+    if (!options.cost_image.empty()) write_cost_image(options, cost, record);
+    if (!options.trace.empty()) write_trace(options.trace, trace, image_attributes(record));
 
     if (options.is_quiet) return;
     print_summary(record);
     if (!options.output.empty()) fmt::print("{}\n", options.output);
+    if (!options.cost_image.empty()) fmt::print("{}\n", options.cost_image);
+    if (!options.trace.empty()) print_trace(options.trace, trace);
 }
 
 }  // namespace
@@ -216,6 +265,16 @@ void add_render_command(CLI::App& app, int&) {
     add_pool_options(*command, options->pool);
     command->add_flag("--count-work", options->count_work, "Count box and primitive tests (slower)");
     command->add_option("--stats", options->stats, "Write all figures to this file, as JSON")->check(check_file_name);
+    command
+        ->add_option("--trace", options->trace,
+                     "Write what each thread did when to this file, which Perfetto and chrome://tracing open")
+        ->check(check_file_name);
+    command
+        ->add_option("--cost-image", options->cost_image,
+                     "Image file for what each pixel cost: values in .exr or .pfm, false colours in .png")
+        ->check(check_file_name);
+    command->add_option("--cost", options->cost, "What is cost there: segments, tests or ns (default: tests)")
+        ->check(CLI::IsMember({"segments", "tests", "ns"}));
     command->add_flag("--quiet", options->is_quiet, "Print nothing");
     command->callback([options] { render(*options); });
 }

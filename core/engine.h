@@ -16,6 +16,9 @@
 
 namespace raypool {
 
+struct CostImage;
+class Trace;
+
 /// OpenMP's schedule clause. chunk 0 is OpenMP's default for the kind.
 struct LoopSchedule {
     enum class Kind : std::uint8_t { Static, Dynamic, Guided };
@@ -47,6 +50,8 @@ struct RenderSettings {
     bool count_work = false;  ///< count box and primitive tests (slower: with code compiled for every feature)
     bool log_rounds = false;  ///< report the rounds of a wavefront engine; two looks at the clock a stage and batch
     Progress* progress = nullptr;
+    Trace* trace = nullptr;           ///< where to put what each thread did when
+    CostImage* cost_image = nullptr;  ///< of the image's size: what to add each pixel's cost to
 };
 
 /// The stages of a round of a wavefront engine. Append is the traffic of records from round to round: what survivors
@@ -87,7 +92,7 @@ struct RenderReport {
     double seconds = 0;  ///< wall clock of the parallel region
     std::vector<ThreadWork> threads;
     SampleAudit audit;
-    std::vector<RoundWork> rounds;  ///< of a wavefront engine, with log_rounds
+    std::vector<RoundWork> rounds;  ///< of a wavefront engine, with log_rounds or a trace
     std::size_t record_bytes = 0;   ///< of a wavefront engine: moved in and out of the pool by a record
     std::size_t pool_bytes = 0;     ///< of a wavefront engine: all pools, streams and accumulators at their largest
 

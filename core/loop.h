@@ -8,6 +8,7 @@
 
 #include "core/engine.h"
 #include "core/error.h"
+#include "core/trace.h"
 
 namespace raypool {
 
@@ -73,7 +74,9 @@ RenderReport run_threads(const RenderSettings& settings, Body body) {
     omp_set_schedule(kKinds[static_cast<int>(settings.schedule.kind)], settings.schedule.chunk);
     omp_set_dynamic(0);
 
+    std::vector<double> ends(report.threads.size());
     const double start = omp_get_wtime();
+    if (settings.trace != nullptr) settings.trace->begin(start, settings.threads);
 #pragma omp parallel num_threads(settings.threads)
     {
         const FlushDenormals flush;
@@ -81,14 +84,20 @@ RenderReport run_threads(const RenderSettings& settings, Body body) {
         ThreadWork work;
         const double begin = omp_get_wtime();
         body(work, audits[id]);
-        work.busy_s = omp_get_wtime() - begin - work.wait_s;
+        ends[id] = omp_get_wtime();
+        work.busy_s = ends[id] - begin - work.wait_s;
         report.threads[id] = work;
+        if (settings.trace != nullptr) settings.trace->lane(static_cast<int>(id)).span("wait", start, begin);
     }
-    report.seconds = omp_get_wtime() - start;
+    const double end = omp_get_wtime();
+    report.seconds = end - start;
 
     omp_set_schedule(kind_before, chunk_before);
     for (ThreadWork& thread : report.threads) thread.wait_s = std::max(0.0, report.seconds - thread.busy_s);
     for (const SampleAudit& audit : audits) report.audit.add(audit);
+    if (settings.trace != nullptr)
+        for (int i = 0; i < settings.threads; ++i)
+            settings.trace->lane(i).span("wait", ends[static_cast<std::size_t>(i)], end);
     return report;
 }
 

@@ -12,6 +12,7 @@
 #include "core/engine.h"
 #include "core/error.h"
 #include "core/loop.h"
+#include "recursive/item_log.h"
 #include "recursive/tracer.h"
 
 namespace raypool::recursive {
@@ -67,20 +68,26 @@ RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& se
         Tracer<needs, Scalar, Work, splitting> tracer(scene, random_seed(settings.seed), settings.depth,
                                                       settings.split_depth, framebuffer.fixed_point());
         ProgressBatch progress(settings.progress);
+        ItemLog log(settings, omp_get_thread_num());
+        PixelCost cost(settings.cost_image);
 
 #pragma omp for schedule(runtime) nowait
         for (std::int64_t item = 0; item < items.count(); ++item) {
             const PixelRange range = items.range(item);
+            log.start(range);
             for (std::int64_t y = range.y_begin; y < range.y_end; ++y) {
                 for (std::int64_t x = range.x_begin; x < range.x_end; ++x) {
                     FixedRgb sum{};
+                    cost.start(tracer);
                     for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s)
                         tracer.template sample<form>(x, y, s, sum);
+                    cost.stop(tracer, y * scene.width + x);
                     framebuffer.add(y * scene.width + x, sum);
                     work.paths += settings.end_sample - settings.first_sample;
                     progress.add(settings.end_sample - settings.first_sample);
                 }
             }
+            log.stop(range);
         }
         work.segments = tracer.segments();
         work.box_tests = tracer.work().box_tests;
@@ -94,7 +101,9 @@ template <Form form, class Scalar>
 RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {
     if (settings.split_depth > 0)
         return render<form, kEverything, Scalar, WorkCount, Splitting::On>(scene, settings, framebuffer);
-    if (settings.count_work) return render<form, kEverything, Scalar, WorkCount>(scene, settings, framebuffer);
+    const bool counts_for_image = settings.cost_image != nullptr && settings.cost_image->cost == Cost::Tests;
+    if (settings.count_work || counts_for_image)
+        return render<form, kEverything, Scalar, WorkCount>(scene, settings, framebuffer);
     return dispatch_needs(scene.needs, [&]<SceneNeeds needs>() {
         return render<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);
     });

@@ -63,6 +63,8 @@ class SharedPool {
     [[nodiscard]] std::size_t batch() const { return stride_; }
     [[nodiscard]] std::int64_t batch_count() const { return static_cast<std::int64_t>(batch_count_); }
     [[nodiscard]] std::size_t first(std::int64_t b) const { return static_cast<std::size_t>(b) * stride_; }
+    /// Records in the pool, between two rounds.
+    [[nodiscard]] std::size_t size() const { return total_; }
     [[nodiscard]] bool is_empty() const { return total_ == 0; }
 
     /// Records of a batch at the start of the round.

@@ -10,6 +10,11 @@ namespace {
 template <class Scalar>
 RenderReport render_any(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const PoolSettings& pool,
                         Framebuffer& framebuffer) {
+    if (settings.cost_image != nullptr)
+        throw InputError(
+            "--cost-image: a pool works on many pixels at a time; the engines that know what a pixel costs are "
+            "recursive "
+            "and iterative");
     if (pool.scope == PoolScope::Shared && needs_owned_pixels(pool.accumulator))
         throw InputError(
             "--accumulator: owned and owned-planar need --pool-scope thread, since no thread owns a pixel of a shared "

@@ -1,7 +1,7 @@
-/// What happened in each round: kept by each thread for itself when rounds are logged, otherwise free.
+/// What happened in each round: kept by each thread for itself when rounds are logged or traced, otherwise free.
 ///
 /// A stage's time is what passes between start() and stop(); what lies between a stop() and the next start() is
-/// nobody's.
+/// nobody's. In the trace a round is what lies between two calls of end_round().
 #pragma once
 
 #include <omp.h>
@@ -9,49 +9,127 @@
 #include <vector>
 
 #include "core/engine.h"
+#include "core/trace.h"
 
 namespace raypool::wavefront {
 
 class RoundLog {
   public:
-    explicit RoundLog(bool is_on) : is_on_(is_on) {}
+    RoundLog(const RenderSettings& settings, int thread)
+        : is_on_(settings.log_rounds || settings.trace != nullptr),
+          lane_(settings.trace == nullptr ? nullptr : &settings.trace->lane(thread)),
+          round_begin_s_(is_on_ ? omp_get_wtime() : 0) {}
 
+    /// From now on a batch of a shared pool is worked on.
+    void start_batch(std::int64_t batch) {
+        if (lane_ == nullptr) return;
+        end_span();
+        batch_ = batch;
+    }
     /// Starts the clock of a stage.
     void start() {
-        if (is_on_) mark_ = omp_get_wtime();
+        if (is_on_) mark_s_ = omp_get_wtime();
     }
-    /// What passed since start() or the last stop() belongs to `stage`.
-    void stop(Stage stage) {
+    /// What passed since start() or the last stop() belongs to `stage`, which worked on `records`.
+    void stop(Stage stage, std::size_t records) {
         if (!is_on_) return;
         const double now = omp_get_wtime();
-        round().stage_s[static_cast<std::size_t>(stage)] += now - mark_;
-        mark_ = now;
+        round().stage_s[static_cast<std::size_t>(stage)] += now - mark_s_;
+        if (lane_ != nullptr) add_span({stage, mark_s_, now, static_cast<std::int64_t>(records), 0});
+        mark_s_ = now;
     }
-    void waited(double seconds) {
-        if (is_on_) round().wait_s += seconds;
+    void waited(double begin_s, double end_s) {
+        if (!is_on_) return;
+        round().wait_s += end_s - begin_s;
+        if (lane_ == nullptr) return;
+        end_span();
+        lane_->span("wait", begin_s, end_s);
     }
     /// Records that were advanced, those that survived, and the lanes that were used for them.
     void advanced(std::size_t records, std::size_t survivors, std::size_t lanes) {
         if (!is_on_) return;
-        round().records_in += static_cast<std::int64_t>(records);
-        round().records_out += static_cast<std::int64_t>(survivors);
-        round().lanes += static_cast<std::int64_t>(lanes);
+        RoundWork work;
+        work.records_in = static_cast<std::int64_t>(records);
+        work.records_out = static_cast<std::int64_t>(survivors);
+        work.lanes = static_cast<std::int64_t>(lanes);
+        round().add(work);
+        traced_.add(work);
+    }
+    /// `records` are in the pool, which is of this thread alone or of all.
+    void occupancy(std::size_t records, Trace::Event::Kind pool) {
+        if (lane_ != nullptr) lane_->occupancy(omp_get_wtime(), static_cast<std::int64_t>(records), pool);
     }
     void end_round() {
-        if (is_on_ && round_ + 1 < kMostRounds) ++round_;
+        if (!is_on_) return;
+        if (round_ + 1 < kMostRounds) ++round_;
+        if (lane_ == nullptr) return;
+        end_span();
+        const double now = omp_get_wtime();
+        lane_->span(
+            "round", round_begin_s_, now,
+            {{{"round", traced_rounds_++}, {"records", traced_.records_in}, {"survivors", traced_.records_out}}});
+        traced_ = {};
+        round_begin_s_ = now;
+        batch_ = kNoBatch;
+    }
+    /// After the last round.
+    void finish() {
+        if (lane_ != nullptr) end_span();
     }
     [[nodiscard]] const std::vector<RoundWork>& rounds() const { return rounds_; }
 
   private:
     static constexpr std::size_t kMostRounds = 4096;  ///< later ones are added to the last
+    static constexpr std::int64_t kNoBatch = -1;
+
+    struct Span {
+        Stage stage;
+        double begin_s, end_s;
+        std::int64_t records;
+        double append_s;  ///< of a span of Generate: for passing its records on
+    };
+    /// Camera rays enter a few registers at a time, and are passed on at once: spans of a thousandth of a round, which
+    /// are joined to one.
+    void add_span(const Span& span) {
+        if (has_span_ && span_.stage == Stage::Generate && span.stage == Stage::Generate) {
+            span_.end_s = span.end_s;
+            span_.records += span.records;
+        } else if (has_span_ && span_.stage == Stage::Generate && span.stage == Stage::Append) {
+            span_.end_s = span.end_s;
+            span_.append_s += span.end_s - span.begin_s;
+        } else {
+            end_span();
+            span_ = span;
+            has_span_ = true;
+        }
+    }
+    void end_span() {
+        if (!has_span_) return;
+        has_span_ = false;
+        Trace::Figures figures{{{"records", span_.records}}};
+        std::size_t i = 1;
+        if (batch_ != kNoBatch) figures[i++] = {"batch", batch_};
+        if (span_.append_s > 0) figures[i] = {"append_ns", static_cast<std::int64_t>(span_.append_s * 1e9)};
+        lane_->span(kStageNames[static_cast<std::size_t>(span_.stage)], span_.begin_s, span_.end_s, figures);
+    }
+
     RoundWork& round() {
         if (round_ >= rounds_.size()) rounds_.resize(round_ + 1);
         return rounds_[round_];
     }
+
     bool is_on_;
-    double mark_ = 0;
+    double mark_s_ = 0;
     std::size_t round_ = 0;
     std::vector<RoundWork> rounds_;
+
+    Trace::Lane* lane_;  ///< null unless traced; all that follows is for it
+    double round_begin_s_;
+    std::int64_t traced_rounds_ = 0;
+    RoundWork traced_;  ///< the round under way
+    std::int64_t batch_ = kNoBatch;
+    Span span_{};
+    bool has_span_ = false;
 };
 
 }  // namespace raypool::wavefront

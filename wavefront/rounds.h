@@ -62,6 +62,7 @@ class ThreadPool {
     void round() {
         count_ = stages_.advance(records_, 0, count_);
         count_ += stages_.take_overflow(records_, count_);
+        stages_.log().occupancy(count_, Trace::Event::Kind::ThreadCounter);
         stages_.log().end_round();
     }
 
@@ -90,6 +91,7 @@ RenderReport render_thread_pools(const RenderContext<ScalarOf<Real>>& context, s
             progress.add(paths.left());
         }
         pool.drain();
+        pool.stages().log().finish();
         pool.stages().report(work, audit);
         rounds[static_cast<std::size_t>(omp_get_thread_num())] = pool.stages().log().rounds();
     });
@@ -113,6 +115,7 @@ RenderReport render_shared_pool(const RenderContext<ScalarOf<Real>>& context, Sh
 
 #pragma omp for schedule(runtime) nowait
             for (std::int64_t b = 0; b < pool.batch_count(); ++b) {
+                stages.log().start_batch(b);
                 // Every record by one bounce; what survives goes on to the next round ...
                 const std::size_t survivors = stages.advance(pool.records(), pool.first(b), pool.count(b));
                 std::size_t end = stages.pass_on(pool, b, pool.first(b), survivors);
@@ -132,6 +135,7 @@ RenderReport render_shared_pool(const RenderContext<ScalarOf<Real>>& context, Sh
             stages.wait();
             is_done = pool.is_empty() && camera.is_done();
             stages.wait();
+            if (omp_get_thread_num() == 0) stages.log().occupancy(pool.size(), Trace::Event::Kind::Counter);
             stages.log().end_round();
         }
         stages.report(work, audit);

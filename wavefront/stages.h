@@ -46,7 +46,7 @@ class Stages {
           overflow_(splitting == Splitting::On ? most_records : 0),
           sort_scratch_(context.pool.sort == Sort::None ? 0 : most_records),
           converter_(context.fixed),
-          log_(context.settings.log_rounds) {
+          log_(context.settings, thread) {
         deposits_.reserve(std::max(most_records, kMostDeposits) + 2 * kRays);
     }
 
@@ -63,8 +63,9 @@ class Stages {
     /// Records that splitting added wait in the overflow, here and in advance().
     std::size_t generate(Records& records, std::size_t first, CameraPaths paths) {
         log_.start();
+        const auto count = static_cast<std::size_t>(paths.left());
         paths_ += paths.left();
-        const std::size_t end = first + static_cast<std::size_t>(paths.left());
+        const std::size_t end = first + count;
         std::size_t written = 0;
         while (!paths.is_done()) {
             const CameraLanes<Real> lanes = paths.template next<Real>(kRays);
@@ -81,7 +82,7 @@ class Stages {
             if (deposits_.count() > kMostDeposits) flush();
         }
         flush();
-        log_.stop(Stage::Generate);
+        log_.stop(Stage::Generate, count);
         return written;
     }
 
@@ -94,11 +95,11 @@ class Stages {
             intersect_single(records, first, count);
         }
         segments_ += static_cast<std::int64_t>(count);
-        log_.stop(Stage::Intersect);
+        log_.stop(Stage::Intersect, count);
 
         if (context_.pool.sort == Sort::Material) {
             sort_by_material(records, first, count);
-            log_.stop(Stage::Sort);
+            log_.stop(Stage::Sort, count);
         }
 
         std::size_t survivors = 0;
@@ -107,10 +108,11 @@ class Stages {
             survivors += shade(records, first + survivors, first + count, records.template load<Real>(first + i),
                                load_hit(i), active);
         }
-        log_.stop(Stage::Shade);
+        log_.stop(Stage::Shade, count);
 
+        const std::size_t ends = deposits_.count();
         flush();
-        log_.stop(Stage::Accumulate);
+        log_.stop(Stage::Accumulate, ends);
         log_.advanced(count, survivors + overflow_count_, (count + kRays - 1) / kRays * kRays);
         return survivors;
     }
@@ -121,7 +123,7 @@ class Stages {
         if constexpr (splitting == Splitting::On) {
             log_.start();
             overflow_.copy_to(records, target, 0, overflow_count_);
-            log_.stop(Stage::Append);
+            log_.stop(Stage::Append, overflow_count_);
         }
         return std::exchange(overflow_count_, 0);
     }
@@ -131,8 +133,9 @@ class Stages {
     template <class Pool>
     std::size_t pass_on(Pool& pool, std::int64_t b, std::size_t first, std::size_t count) {
         log_.start();
-        const std::size_t end = pool.keep(b, first, count, overflow_, std::exchange(overflow_count_, 0));
-        log_.stop(Stage::Append);
+        const std::size_t split = std::exchange(overflow_count_, 0);
+        const std::size_t end = pool.keep(b, first, count, overflow_, split);
+        log_.stop(Stage::Append, count + split);
         return end;
     }
     /// This thread's part in what a shared pool does between two rounds.
@@ -140,20 +143,20 @@ class Stages {
     void end_round(Pool& pool) {
         log_.start();
         pool.end_round([this] {
-            log_.stop(Stage::Append);
+            log_.stop(Stage::Append, 0);
             wait();
             log_.start();
         });
-        log_.stop(Stage::Append);
+        log_.stop(Stage::Append, 0);
     }
 
     /// Waits for the other threads.
     void wait() {
         const double begin = omp_get_wtime();
 #pragma omp barrier
-        const double seconds = omp_get_wtime() - begin;
-        waited_s_ += seconds;
-        log_.waited(seconds);
+        const double end = omp_get_wtime();
+        waited_s_ += end - begin;
+        log_.waited(begin, end);
     }
 
     RoundLog& log() {

@@ -127,11 +127,23 @@ class BadOption(CommandTest):
                 "--precision": ("half", "long double"),
                 "--engine": ("quick", ""),
                 "--output": ("out", "out.gif", "out.png.txt", ".png/", ""),
-                "--stats": ("",)}.items():
+                "--stats": ("",),
+                "--trace": ("",),
+                "--cost-image": ("out", "out.gif", "out.png.txt", ".png/", ""),
+                "--cost": ("time", ""),
+                "--pool-rays": ("0", "-1", "1.5", "0KB", "-1KB", "KB", "1kb", "1 KB", "1KB ", "1B", "1KiB", "0x1KB", "1e3",
+                                2**31, f"{2**31}KB", "99999999999999999999MB", "")}.items():
             for value in values:
                 with self.subTest(option=option, value=value):
-                    named = option if option != "--output" or value == "" else str(value)
+                    named = option if option not in ("--output", "--cost-image") or value == "" else str(value)
                     self.assert_refused("render", "scene.json", f"{option}={value}", named=named)
+
+    def test_for_what_an_engine_cannot_know_is_refused(self):
+        self.assert_refused("render", "scene.json", "--engine", "wavefront", "--cost-image", "cost.png",
+                            named=["--cost-image", "recursive", "iterative"])
+        for accumulator in ("owned", "owned-planar"):
+            self.assert_refused("render", "scene.json", "--engine", "wavefront", "--pool-scope", "shared",
+                                "--accumulator", accumulator, named=["--accumulator", "--pool-scope"])
 
     def test_that_is_unknown_is_refused(self):
         self.assert_refused("render", "scene.json", "--antialias", named="--antialias")
@@ -162,6 +174,8 @@ class UnwritableOutput(CommandTest):
                 # A billion samples: refused at once, or the test runs out of time.
                 self.assert_refused("render", "scene.json", "--spp", 10**9, "-o", path, named=path)
                 self.assert_refused("render", "scene.json", "--spp", 10**9, "--stats", path, named=path)
+                self.assert_refused("render", "scene.json", "--spp", 10**9, "--trace", path, named=path)
+                self.assert_refused("render", "scene.json", "--spp", 10**9, "--cost-image", path, named=path)
                 self.assert_refused("render", "scene.json", "--spp", 10**9, "-o", "good.png", "--stats", path,
                                     named=path)
 

@@ -196,6 +196,121 @@ class Stats(CommandTest):
             self.assertEqual(attributes["raypool." + key], text)
 
 
+class Trace(CommandTest):
+    SHARED = ("--engine", "wavefront", "--pool-scope", "shared", "--refill", "drain", "--pool-rays", 40, "--pool-batch", 16)
+
+    def trace(self, *arguments):
+        """Stats and trace of a render whose hash is that of a render without a trace."""
+        stats = self.stats("--spp", 3, "--threads", 2, "--trace", "trace.json", *arguments)
+        self.assertEqual(stats["hash"], self.stats("--spp", 3)["hash"])
+        return stats, json.loads((self.folder / "trace.json").read_text())
+
+    def assert_schema(self, trace):
+        """As the Trace Event Format has it: what Perfetto and chrome://tracing read."""
+        self.assertEqual(set(trace), {"displayTimeUnit", "otherData", "traceEvents"})
+        for event in trace["traceEvents"]:
+            self.assertIn(event["ph"], ("M", "X", "C"))
+            self.assertIs(type(event["name"]), str)
+            self.assertIn(type(event["ts"]), (int, float))
+            self.assertEqual((type(event["pid"]), type(event["tid"])), (int, int))
+            self.assertEqual("dur" in event, event["ph"] == "X")
+            if event["ph"] != "M":
+                self.assertTrue(all(type(value) is int for value in event["args"].values()))
+        names = {(e["name"], e["tid"]): e["args"]["name"] for e in trace["traceEvents"] if e["ph"] == "M"}
+        self.assertEqual(names, {("process_name", 0): "raypool", ("thread_name", 0): "thread 0",
+                                 ("thread_name", 1): "thread 1"})
+
+    def spans(self, trace, thread):
+        """(name, begin, end) in nanoseconds, which nest."""
+        spans = [(e["name"], round(e["ts"] * 1000), round((e["ts"] + e["dur"]) * 1000))
+                 for e in trace["traceEvents"] if e["ph"] == "X" and e["tid"] == thread]
+        around = []
+        for name, begin, end in sorted(spans, key=lambda span: (span[1], -span[2])):
+            while around and around[-1] <= begin:
+                around.pop()
+            self.assertLessEqual(end, around[-1] if around else end, name)
+            around.append(end)
+        return spans
+
+    def test_of_a_shared_pool_shows_rounds_stages_waiting_and_occupancy(self):
+        stats, trace = self.trace(*self.SHARED)
+        self.assert_schema(trace)
+        rounds = len(stats["rounds"])
+        for thread in (0, 1):
+            spans = self.spans(trace, thread)
+            names = [name for name, _, _ in spans]
+            self.assertEqual(names.count("round"), rounds)
+            self.assertEqual(names.count("wait"), 3 * rounds + 2)
+            waited = sum(end - begin for name, begin, end in spans if name == "wait") * 1e-9
+            self.assertAlmostEqual(waited, stats["threads"][thread]["wait_s"], delta=1e-9 * len(spans) + 1e-6)
+        names = {e["name"] for e in trace["traceEvents"]}
+        self.assertLessEqual({"generate", "intersect", "shade", "accumulate", "append"}, names)
+        occupancy = [e["args"]["records"] for e in trace["traceEvents"] if e["ph"] == "C"]
+        self.assertEqual(len(occupancy), rounds)
+        self.assertEqual((max(occupancy) <= 40, max(occupancy) > 16, occupancy[-1]), (True, True, 0))
+        self.assertEqual(trace["otherData"]["events_dropped"], 0)
+        self.assertEqual(trace["otherData"]["raypool.hash"], stats["hash"])
+
+    def test_of_other_engines_shows_their_items(self):
+        for engine, items in (("recursive", "line"), ("iterative", "line"), ("wavefront", "round")):
+            _, trace = self.trace("--engine", engine)
+            self.assert_schema(trace)
+            self.assertIn(items, {name for thread in (0, 1) for name, _, _ in self.spans(trace, thread)})
+
+    def test_says_how_much_it_holds_and_what_it_left_out(self):
+        result = self.run_well("render", "scene.json", "--spp", 1, "--trace", "trace.json")
+        self.assertRegex(result.stdout, r"\ntrace\.json: \d+ events\n\Z")
+        self.write("scene.json", changed(SCENE, "/image", {"width": 400, "height": 300}))
+        result = self.run_well("render", "scene.json", "--spp", 1, "--threads", 1, "--grain", "tile:1", "--trace",
+                               "trace.json")
+        left_out = 400 * 300 + 2 - 100_000
+        self.assertIn(f"\ntrace.json: 100000 events, and {left_out} that are left out", result.stdout)
+        trace = json.loads((self.folder / "trace.json").read_text())
+        self.assertEqual(trace["otherData"]["events_dropped"], left_out)
+
+
+class CostImage(CommandTest):
+    def costs(self, *arguments):
+        stats = self.stats("--spp", 3, "--cost-image", "cost.pfm", *arguments)
+        self.assertEqual(stats["hash"], self.stats("--spp", 3)["hash"])
+        _, _, values = self.pixels("cost.pfm")
+        self.assertEqual(values[0::3], values[1::3])
+        self.assertEqual(values[0::3], values[2::3])
+        return stats, values[0::3]
+
+    def test_adds_up_to_the_totals(self):
+        stats, tests = self.costs("--threads", 3, "--grain", "tile:2")
+        total = sum(thread["box_tests"] + thread["primitive_tests"] for thread in stats["threads"])
+        self.assertEqual(sum(tests), total)
+        stats, segments = self.costs("--cost", "segments", "--engine", "iterative")
+        self.assertEqual(sum(segments), stats["segments"])
+        _, nanoseconds = self.costs("--cost", "ns")
+        self.assertGreater(min(nanoseconds), 0)
+
+    def test_is_values_or_a_picture_with_a_scale(self):
+        for cost in ("segments", "tests", "ns"):
+            result = self.run_well("render", "scene.json", "--spp", 1, "--cost", cost, "--cost-image", "cost.png")
+            self.assertTrue(result.stdout.endswith("\ncost.png\n"))
+            width, height = struct.unpack(">II", (self.folder / "cost.png").read_bytes()[16:24])
+            self.assertGreater(width, 8 / 6 * height)
+        self.costs("--cost", "segments")
+        self.run_well("render", "scene.json", "--spp", 3, "--cost", "segments", "--cost-image", "cost.exr")
+        self.run_well("diff", "cost.exr", "cost.pfm")
+        self.assertEqual(exr_attributes((self.folder / "cost.exr").read_bytes())["raypool.cost"], "segments")
+
+
+class PoolRays(CommandTest):
+    def test_may_be_bytes_of_whole_records(self):
+        # 52 and 88 bytes a record; quads and planes run on code for every feature, whose records have a time too.
+        for text, precision, rays in (("100", "float", 100), ("1KB", "float", 1024 // 56), ("2MB", "float", 2**21 // 56),
+                                      ("512KB", "double", 2**19 // 96)):
+            stats = self.stats("--spp", 1, "--engine", "wavefront", "--pool-rays", text, "--precision", precision)
+            self.assertEqual(stats["settings"]["pool"]["rays"], rays)
+        self.write("scene.json", changed(changed(SCENE, "/shapes/2"), "/shapes/1"))
+        stats = self.stats("--spp", 1, "--engine", "wavefront", "--pool-rays", "1KB")
+        self.assertEqual((stats["settings"]["pool"]["rays"], stats["record_bytes"]), (1024 // 52, 52))
+
+
 class Diff(CommandTest):
     def test_ends_with_zero_for_the_same_bits_and_with_one_for_others(self):
         for kind in ("exr", "pfm", "png"):

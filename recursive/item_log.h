@@ -1,0 +1,84 @@
+/// What each work item and each pixel took: for a trace and for a cost image. Free where neither is asked for.
+#pragma once
+
+#include <omp.h>
+
+#include <chrono>
+
+#include "core/cost_image.h"
+#include "core/loop.h"
+#include "core/trace.h"
+
+namespace raypool::recursive {
+
+/// The spans of one thread's work items: one for each line or tile. Single pixels would be millions, so those of a line
+/// that a thread renders one after the other share a span.
+class ItemLog {
+  public:
+    ItemLog(const RenderSettings& settings, int thread)
+        : lane_(settings.trace == nullptr ? nullptr : &settings.trace->lane(thread)), grain_(settings.grain.kind) {}
+    ItemLog(const ItemLog&) = delete;
+    ItemLog& operator=(const ItemLog&) = delete;
+    ~ItemLog() { end_span(); }
+
+    void start(const PixelRange& range) {
+        if (lane_ == nullptr || (grain_ == Grain::Kind::Pixel && pixels_ > 0 && range.y_begin == y_)) return;
+        end_span();
+        x_ = range.x_begin;
+        y_ = range.y_begin;
+        begin_s_ = omp_get_wtime();
+    }
+    void stop(const PixelRange& range) {
+        if (lane_ == nullptr) return;
+        end_s_ = omp_get_wtime();
+        pixels_ += (range.x_end - range.x_begin) * (range.y_end - range.y_begin);
+    }
+
+  private:
+    void end_span() {
+        if (pixels_ == 0) return;
+        constexpr const char* kNames[] = {"pixels", "line", "tile"};
+        lane_->span(kNames[static_cast<int>(grain_)], begin_s_, end_s_, {{{"x", x_}, {"y", y_}, {"pixels", pixels_}}});
+        pixels_ = 0;
+    }
+
+    Trace::Lane* lane_;
+    Grain::Kind grain_;
+    std::int64_t x_ = 0, y_ = 0;
+    std::int64_t pixels_ = 0;  ///< of the span under way
+    double begin_s_ = 0, end_s_ = 0;
+};
+
+/// Writes down what pixels cost.
+class PixelCost {
+  public:
+    explicit PixelCost(CostImage* image) : image_(image) {}
+
+    template <class Tracer>
+    void start(const Tracer& tracer) {
+        if (image_ != nullptr) before_ = figure(tracer);
+    }
+    template <class Tracer>
+    void stop(const Tracer& tracer, std::int64_t pixel) {
+        if (image_ != nullptr) image_->values[static_cast<std::size_t>(pixel)] += figure(tracer) - before_;
+    }
+
+  private:
+    template <class Tracer>
+    [[nodiscard]] std::int64_t figure(const Tracer& tracer) const {
+        switch (image_->cost) {
+            case Cost::Segments:
+                return tracer.segments();
+            case Cost::Tests:
+                return tracer.work().box_tests + tracer.work().primitive_tests;
+            case Cost::Nanoseconds:
+                break;
+        }
+        return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+    }
+
+    CostImage* image_;
+    std::int64_t before_ = 0;
+};
+
+}  // namespace raypool::recursive
