@@ -27,12 +27,16 @@ class RayRows {
         std::size_t offset = 0;
         for_each_field<kPaper>(record, [&](auto& field) {
             using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;
-            const std::byte* from = memory_.data() + first * record_bytes<kPaper, float>() + offset;
-            field = std::remove_cvref_t<decltype(field)>([&](auto i) {
-                T value;
-                std::memcpy(&value, from + i * record_bytes<kPaper, float>(), sizeof(T));
-                return value;
-            });
+            const auto value = [&](std::size_t i) {
+                T bits;
+                std::memcpy(&bits, memory_.data() + (first + i) * record_bytes<kPaper, float>() + offset, sizeof(T));
+                return bits;
+            };
+            if constexpr (Simd<R>) {
+                field = std::remove_cvref_t<decltype(field)>(value);
+            } else {
+                field = value(0);
+            }
             offset += sizeof(T);
         });
         return record;
