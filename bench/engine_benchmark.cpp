@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bench/bench_support.h"
-#include "core/scene_reader.h"
+#include "bench/paper_scene.h"
 #include "recursive/engine.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
@@ -15,13 +15,10 @@ namespace {
 
 constexpr int kSpp = 16;
 
-const CompiledScene<float>& paper() {
-    static const CompiledScene<float> scene = compile<float>(builtin_scene("paper"));
-    return scene;
-}
-
+/// Room for the samples of all iterations.
 Framebuffer empty_framebuffer() {
-    return {paper().width, paper().height, FixedPoint::make(kSpp, paper().max_radiance)};
+    return {paper_scene().width, paper_scene().height,
+            FixedPoint::make(std::int64_t{kSpp} << 20U, paper_scene().max_radiance)};
 }
 
 const std::string& expected_hash() {
@@ -29,39 +26,31 @@ const std::string& expected_hash() {
         RenderSettings settings;
         settings.end_sample = kSpp;
         Framebuffer framebuffer = empty_framebuffer();
-        recursive::RecursiveEngine().render(paper(), settings, framebuffer);
+        recursive::RecursiveEngine().render(paper_scene(), settings, framebuffer);
         return framebuffer.hash();
     }();
     return hash;
 }
 
-void render_paper(benchmark::State& state, const std::shared_ptr<Engine>& engine) {
+void render_paper(benchmark::State& state, const Engine& engine, int threads) {
     RenderSettings settings;
     settings.end_sample = kSpp;
-    settings.threads = static_cast<int>(state.range(0));
+    settings.threads = threads;
     settings.schedule = {LoopSchedule::Kind::Dynamic, 0};
     Framebuffer framebuffer = empty_framebuffer();
-    RenderReport report = engine->render(paper(), settings, framebuffer);
-    if (framebuffer.hash() != expected_hash()) {
-        state.SkipWithError("the image differs from the recursive engine's");
-        return;
-    }
-    for (auto _ : state) report = engine->render(paper(), settings, framebuffer);
+    RenderReport report = engine.render(paper_scene(), settings, framebuffer);
+    if (!agree(state, framebuffer.hash() == expected_hash(), "the image differs from the recursive engine's")) return;
+    for (auto _ : state) report = engine.render(paper_scene(), settings, framebuffer);
 
-    const auto per_iteration = benchmark::Counter::kIsIterationInvariantRate;
-    state.counters["paths/s"] = benchmark::Counter(static_cast<double>(report.paths()), per_iteration);
-    state.counters["rays/s"] = benchmark::Counter(static_cast<double>(report.segments()), per_iteration);
-    state.counters["bytes/ray"] = static_cast<double>(report.record_bytes);
+    count_rays(state, report.segments(), static_cast<double>(report.record_bytes));
+    state.counters["paths/s"] =
+        benchmark::Counter(static_cast<double>(report.paths()), benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void add(const std::string& name, const std::shared_ptr<Engine>& engine) {
-    benchmark::RegisterBenchmark(("engine/paper/" + name).c_str(),
-                                 [engine](benchmark::State& state) { render_paper(state, engine); })
-        ->ArgName("threads")
-        ->Arg(1)
-        ->Arg(2)
-        ->UseRealTime()
-        ->Unit(benchmark::kMillisecond);
+void add(const std::string& name, int threads, const std::shared_ptr<Engine>& engine) {
+    add_row("engine/paper/" + name + "/threads:" + std::to_string(threads), [=](benchmark::State& state) {
+        render_paper(state, *engine, threads);
+    })->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace
@@ -70,9 +59,11 @@ void add(const std::string& name, const std::shared_ptr<Engine>& engine) {
 int main(int argc, char** argv) {
     using namespace raypool;
     if (!begin_benchmarks(argc, argv)) return 2;
-    add("recursive", std::make_shared<recursive::RecursiveEngine>());
-    add("iterative", std::make_shared<recursive::IterativeEngine>());
-    for (const wavefront::Rung& rung : wavefront::ladder(1))
-        add(rung.name, std::make_shared<wavefront::WavefrontEngine>(rung.pool));
+    for (const int threads : {1, 2}) {
+        add("recursive", threads, std::make_shared<recursive::RecursiveEngine>());
+        add("iterative", threads, std::make_shared<recursive::IterativeEngine>());
+        for (const wavefront::Rung& rung : wavefront::ladder(threads))
+            add(rung.name, threads, std::make_shared<wavefront::WavefrontEngine>(rung.pool));
+    }
     benchmark::RunSpecifiedBenchmarks();
 }

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "bench/bench_support.h"
+#include "bench/paper_scene.h"
 #include "wavefront/ray_record.h"
 
 namespace raypool {
 namespace {
 
 using namespace wavefront;
-using Real = Wide<float, stdx::native_simd<float>::size()>;
-constexpr SceneNeeds kPaper = kCompiledNeeds[1];
+using Real = Lanes;
 constexpr int kRays = kLanes<Real>;
 
 /// The twin of RayColumns: the same fields, a record after the other.
@@ -27,12 +27,16 @@ class RayRows {
         std::size_t offset = 0;
         for_each_field<kPaper>(record, [&](auto& field) {
             using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;
-            const std::byte* from = memory_.data() + first * record_bytes<kPaper, float>() + offset;
-            field = std::remove_cvref_t<decltype(field)>([&](auto i) {
-                T value;
-                std::memcpy(&value, from + i * record_bytes<kPaper, float>(), sizeof(T));
-                return value;
-            });
+            const auto value = [&](std::size_t i) {
+                T bits;
+                std::memcpy(&bits, memory_.data() + (first + i) * record_bytes<kPaper, float>() + offset, sizeof(T));
+                return bits;
+            };
+            if constexpr (Simd<R>) {
+                field = std::remove_cvref_t<decltype(field)>(value);
+            } else {
+                field = value(0);
+            }
             offset += sizeof(T);
         });
         return record;
@@ -79,43 +83,42 @@ bool layouts_agree() {
     const std::vector<unsigned> masks = survivor_masks(kCount / kRays);
     RayColumns<kPaper, float> columns(kCount);
     RayRows rows(kCount);
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        RayRecord<float> record{};
+        record.key.pixel = i;
+        record.throughput = vec3<float>(1, 0, static_cast<float>(i));
+        columns.append<float>(i, record, 1, kCount);
+        rows.append<float>(i, record, 1, kCount);
+    }
     const std::size_t kept = pass(columns, kCount, masks);
     if (pass(rows, kCount, masks) != kept) return false;
-    for (std::size_t i = 0; i + kRays <= kept; ++i)
-        if (lane(columns.load<Real>(i).throughput[0], 0) != lane(rows.load<Real>(i).throughput[0], 0)) return false;
+    for (std::size_t i = 0; i < kept; ++i) {
+        const auto a = columns.load<float>(i);
+        const auto b = rows.load<float>(i);
+        if (a.key.pixel != b.key.pixel || a.throughput != b.throughput) return false;
+    }
     return true;
 }
 
 template <class Records>
 void shade_memory(benchmark::State& state) {
-    if (!layouts_agree()) {
-        state.SkipWithError("the layouts disagree");
-        return;
-    }
+    if (!agree(state, layouts_agree(), "the layouts hold different records")) return;
     const auto count = static_cast<std::size_t>(state.range(0));
     const std::vector<unsigned> masks = survivor_masks(count / kRays);
     Records records(count);
     for (auto _ : state) benchmark::DoNotOptimize(pass(records, count, masks));
-    state.counters["rays/s"] =
-        benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsIterationInvariantRate);
-    state.counters["bytes/ray"] = static_cast<double>(record_bytes<kPaper, float>());
+    count_rays(state, state.range(0), static_cast<double>(record_bytes<kPaper, float>()));
 }
-
-BENCHMARK(shade_memory<RayColumns<kPaper, float>>)
-    ->Name("record/layout/structure_of_arrays")
-    ->RangeMultiplier(8)
-    ->Range(1024, 65536)
-    ->UseRealTime();
-BENCHMARK(shade_memory<RayRows>)
-    ->Name("record/layout/array_of_structures")
-    ->RangeMultiplier(8)
-    ->Range(1024, 65536)
-    ->UseRealTime();
 
 }  // namespace
 }  // namespace raypool
 
 int main(int argc, char** argv) {
-    if (!raypool::begin_benchmarks(argc, argv)) return 2;
+    using namespace raypool;
+    if (!begin_benchmarks(argc, argv)) return 2;
+    add_row("record/layout/structure_of_arrays", shade_memory<wavefront::RayColumns<kPaper, float>>)
+        ->RangeMultiplier(8)
+        ->Range(1024, 65536);
+    add_row("record/layout/array_of_structures", shade_memory<RayRows>)->RangeMultiplier(8)->Range(1024, 65536);
     benchmark::RunSpecifiedBenchmarks();
 }

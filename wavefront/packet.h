@@ -48,16 +48,23 @@ RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, co
 
 }  // namespace detail
 
-/// The closest hits of camera rays, which start on nothing. Lanes that are not active get some hit or none.
+/// The closest hits of a packet. Lanes that are not active get some hit or none.
 template <SceneNeeds needs, class Real, class Work>
-RAYPOOL_INLINE Hit<Real> closest_hits(const CompiledScene<ScalarOf<Real>>& scene, const Ray<Real>& ray,
+RAYPOOL_INLINE Hit<Real> closest_hits(const CompiledScene<ScalarOf<Real>>& scene, const WideRays<Real>& rays,
                                       const Mask<Real>& is_active, Work& work) {
-    const WideRays<Real> rays{ray, ray_inverse<Real>(ray.direction), Int<Real>(kNoPrimitive)};
     Hit<Real> hit;
     intersect_large<needs, Real>(scene, rays, std::popcount(mask_bits(is_active)), hit, work);
     if constexpr (needs.flat) detail::walk_packet<needs, Real>(scene.quad_stream_tree, rays, is_active, hit, work);
     detail::walk_packet<needs, Real>(scene.sphere_stream_tree, rays, is_active, hit, work);
     return hit;
+}
+
+/// The same of camera rays, which start on nothing.
+template <SceneNeeds needs, class Real, class Work>
+RAYPOOL_INLINE Hit<Real> closest_hits(const CompiledScene<ScalarOf<Real>>& scene, const Ray<Real>& ray,
+                                      const Mask<Real>& is_active, Work& work) {
+    const WideRays<Real> rays{ray, ray_inverse<Real>(ray.direction), Int<Real>(kNoPrimitive)};
+    return closest_hits<needs, Real>(scene, rays, is_active, work);
 }
 
 }  // namespace raypool::wavefront

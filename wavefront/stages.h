@@ -79,9 +79,9 @@ class Stages {
             const Hit<Real> hit = closest_hits<needs, Real>(context_.scene, record.ray, lanes.is_active(), work_);
             segments_ += lanes.count;
             written += shade(records, first + written, end, record, hit, active);
-            if (deposits_.count() > kMostDeposits) flush();
+            if (deposits_.count() > kMostDeposits) accumulate();
         }
-        flush();
+        accumulate();
         log_.stop(Stage::Generate, count);
         return written;
     }
@@ -89,11 +89,7 @@ class Stages {
     /// Takes records [first, first + count) through one bounce. Returns how many survive, now at the front.
     std::size_t advance(Records& records, std::size_t first, std::size_t count) {
         log_.start();
-        if (context_.pool.intersection == Intersection::Stream) {
-            intersect_stream(records, first, count);
-        } else {
-            intersect_single(records, first, count);
-        }
+        intersect(records, first, count);
         segments_ += static_cast<std::int64_t>(count);
         log_.stop(Stage::Intersect, count);
 
@@ -102,20 +98,66 @@ class Stages {
             log_.stop(Stage::Sort, count);
         }
 
+        const std::size_t survivors = shade(records, first, count);
+        log_.stop(Stage::Shade, count);
+
+        const std::size_t ends = deposits_.count();
+        accumulate();
+        log_.stop(Stage::Accumulate, ends);
+        log_.advanced(count, survivors + overflow_count_, (count + kRays - 1) / kRays * kRays);
+        return survivors;
+    }
+
+    // What advance() is made of, in its order, for whoever looks at one stage alone.
+
+    /// Finds the closest hits of records [first, first + count), which then lie in stream().
+    void intersect(const Records& records, std::size_t first, std::size_t count) {
+        if (context_.pool.intersection == Intersection::Stream) {
+            intersect_stream(records, first, count);
+        } else {
+            intersect_single(records, first, count);
+        }
+    }
+
+    /// A counting sort by material kind (misses last) of records and hits. The settings must ask for it.
+    void sort_by_material(Records& records, std::size_t first, std::size_t count) {
+        constexpr std::size_t kKinds = 5;
+        const auto kind = [&](std::size_t i) -> std::size_t {
+            const std::int32_t id = stream_.primitive_id()[i];
+            if (id < 0) return kKinds - 1;
+            const auto& row = context_.scene.surfaces[static_cast<std::size_t>(id)];
+            return static_cast<std::size_t>(row.value[SurfaceRow<Scalar>::kMaterial]);
+        };
+        std::size_t place[kKinds + 1] = {};
+        for (std::size_t i = 0; i < count; ++i) ++place[kind(i) + 1];
+        for (std::size_t k = 1; k <= kKinds; ++k) place[k] += place[k - 1];
+        std::uint32_t* order = stream_.lists();
+        for (std::size_t i = 0; i < count; ++i) order[place[kind(i)]++] = static_cast<std::uint32_t>(i);
+        auto* scratch = reinterpret_cast<std::byte*>(sort_scratch_.data());
+        records.permute(first, count, order, scratch);
+        permute(stream_.distance(), order, count, scratch);
+        permute(stream_.primitive_id(), order, count, scratch);
+    }
+
+    /// Collects what ended as deposits and moves the survivors to the front. Returns how many they are.
+    std::size_t shade(Records& records, std::size_t first, std::size_t count) {
         std::size_t survivors = 0;
         for (std::size_t i = 0; i < count; i += kRays) {
             const unsigned active = count - i >= kRays ? (1U << kRays) - 1 : (1U << (count - i)) - 1;
             survivors += shade(records, first + survivors, first + count, records.template load<Real>(first + i),
                                load_hit(i), active);
         }
-        log_.stop(Stage::Shade, count);
-
-        const std::size_t ends = deposits_.count();
-        flush();
-        log_.stop(Stage::Accumulate, ends);
-        log_.advanced(count, survivors + overflow_count_, (count + kRays - 1) / kRays * kRays);
         return survivors;
     }
+
+    /// Adds the deposits to the framebuffer.
+    void accumulate() {
+        context_.accumulator.add(deposits_, converter_, thread_);
+        deposits_.clear();
+    }
+
+    RayStream<Scalar>& stream() { return stream_; }
+    [[nodiscard]] std::size_t deposit_count() const { return deposits_.count(); }
 
     [[nodiscard]] std::size_t overflow_count() const { return overflow_count_; }
     /// Moves the overflow to record `target`. Returns how many records that were.
@@ -279,10 +321,7 @@ class Stages {
         } else {
             for (std::size_t i = 0; i < count; i += kRays) {
                 const RayRecord<Real> record = records.template load<Real>(first + i);
-                using Signed = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
-                const auto leaving =
-                    stdx::static_simd_cast<Int<Real>>(stdx::static_simd_cast<Signed>(record.leaving_id));
-                const WideRays<Real> rays{record.ray, ray_inverse<Real>(record.ray.direction), leaving};
+                const WideRays<Real> rays = wide_rays<Real>(record.ray, record.leaving_id);
                 Hit<Real> hit;
                 intersect_large<needs, Real>(context_.scene, rays,
                                              static_cast<int>(std::min<std::size_t>(kRays, count - i)), hit, work_);
@@ -315,36 +354,11 @@ class Stages {
         store_rows<12, Real>(stream_.rows()[i].value, column);
     }
 
-    /// A counting sort by material kind (misses last) of records and hits.
-    void sort_by_material(Records& records, std::size_t first, std::size_t count) {
-        constexpr std::size_t kKinds = 5;
-        const auto kind = [&](std::size_t i) -> std::size_t {
-            const std::int32_t id = stream_.primitive_id()[i];
-            if (id < 0) return kKinds - 1;
-            const auto& row = context_.scene.surfaces[static_cast<std::size_t>(id)];
-            return static_cast<std::size_t>(row.value[SurfaceRow<Scalar>::kMaterial]);
-        };
-        std::size_t place[kKinds + 1] = {};
-        for (std::size_t i = 0; i < count; ++i) ++place[kind(i) + 1];
-        for (std::size_t k = 1; k <= kKinds; ++k) place[k] += place[k - 1];
-        std::uint32_t* order = stream_.lists();
-        for (std::size_t i = 0; i < count; ++i) order[place[kind(i)]++] = static_cast<std::uint32_t>(i);
-        auto* scratch = reinterpret_cast<std::byte*>(sort_scratch_.data());
-        records.permute(first, count, order, scratch);
-        permute(stream_.distance(), order, count, scratch);
-        permute(stream_.primitive_id(), order, count, scratch);
-    }
-
     template <class T>
     static void permute(T* values, const std::uint32_t* order, std::size_t count, std::byte* scratch) {
         T* sorted = reinterpret_cast<T*>(scratch);
         for (std::size_t i = 0; i < count; ++i) sorted[i] = values[order[i]];
         std::copy_n(sorted, count, values);
-    }
-
-    void flush() {
-        context_.accumulator.add(deposits_, converter_, thread_);
-        deposits_.clear();
     }
 
     const RenderContext<Scalar>& context_;

@@ -18,6 +18,14 @@ struct WideRays {
     Int<Real> leaving_id;
 };
 
+/// Of rays as a record keeps them: the primitive left is an unsigned number.
+template <Simd Real>
+RAYPOOL_INLINE WideRays<Real> wide_rays(const Ray<Real>& ray, const Uint32<Real>& leaving_id) {
+    using Signed = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
+    return {ray, ray_inverse<Real>(ray.direction),
+            stdx::static_simd_cast<Int<Real>>(stdx::static_simd_cast<Signed>(leaving_id))};
+}
+
 /// Takes the hits at `t` of primitive `id` that are closer than the closest so far.
 template <class Real>
 RAYPOOL_INLINE Mask<Real> closer(const Real& t, std::int32_t id, const Hit<Real>& hit) {

@@ -1,0 +1,253 @@
+// How radiance reaches the framebuffer.
+//   accumulate/...   every kind of accumulator, where threads have pixels of their own and where all add to the same
+//   few framebuffer/...  the deposits of a real render, to sums that lie side by side (r, g, b, r, g, b, ...) or in
+//   three
+//                    planes, in the order of the pixels and in the order in which a shared pool ends its paths
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "bench/bench_support.h"
+#include "bench/frozen_rays.h"
+#include "wavefront/rounds.h"
+
+namespace raypool {
+namespace {
+
+using namespace wavefront;
+using AnyAccumulator = AccumulatorBase<float>;
+
+constexpr std::size_t kDepositBytes = 3 * sizeof(float) + sizeof(std::uint32_t);
+constexpr std::size_t kSumBytes = 3 * sizeof(std::int64_t);
+
+struct Kind {
+    const char* name;
+    Accumulator accumulator;
+    bool is_exact;   ///< adds integers: the same sums in any order
+    bool may_share;  ///< threads may add to one pixel
+};
+constexpr Kind kKinds[] = {
+    {"owned", Accumulator::OwnedInt64, true, false},           {"atomic", Accumulator::AtomicInt64, true, true},
+    {"private", Accumulator::PrivateInt64, true, true},        {"atomic_float", Accumulator::AtomicFloat, false, true},
+    {"atomic_double", Accumulator::AtomicDouble, false, true},
+};
+
+Framebuffer empty_framebuffer() {
+    return {paper_scene().width, paper_scene().height, StageRig<float>::roomy()};
+}
+
+/// A sample that ended.
+struct Deposit {
+    std::uint32_t pixel;
+    Vec3<float> radiance;
+};
+
+/// Deposits in the batches in which stages hand them on.
+std::vector<Deposits<float>> batches(const std::vector<Deposit>& deposits) {
+    constexpr std::size_t kBatch = 1024;
+    std::vector<Deposits<float>> all((deposits.size() + kBatch - 1) / kBatch);
+    for (Deposits<float>& batch : all) batch.reserve(kBatch);
+    for (std::size_t i = 0; i < deposits.size(); ++i)
+        all[i / kBatch].put<float>(deposits[i].pixel, deposits[i].radiance, 1);
+    return all;
+}
+
+// Accumulators, by themselves.
+
+enum class Pixels { Own, Same };
+
+/// What each of `threads` threads adds: anywhere in its part of the image, or to the same eight pixels.
+std::vector<std::vector<Deposits<float>>> deposits_of_threads(Pixels pixels, int threads) {
+    constexpr std::size_t kDeposits = 65536;
+    const auto image = static_cast<std::uint32_t>(paper_scene().pixel_count());
+    const std::uint32_t part = pixels == Pixels::Own ? image / static_cast<std::uint32_t>(threads) : 8;
+    std::vector<std::vector<Deposits<float>>> all;
+    for (int thread = 0; thread < threads; ++thread) {
+        std::mt19937 random(static_cast<unsigned>(thread));
+        std::uniform_real_distribution<float> unit(0, 1);
+        const std::uint32_t first = pixels == Pixels::Own ? static_cast<std::uint32_t>(thread) * part : image / 2;
+        std::vector<Deposit> deposits(kDeposits);
+        for (Deposit& deposit : deposits)
+            deposit = {first + static_cast<std::uint32_t>(random() % part),
+                       vec3<float>(unit(random), unit(random), unit(random))};
+        all.push_back(batches(deposits));
+    }
+    return all;
+}
+
+void add_all(AnyAccumulator& accumulator, const std::vector<std::vector<Deposits<float>>>& deposits,
+             const FixedPoint& fixed) {
+#pragma omp parallel num_threads(static_cast <int>(deposits.size()))
+    {
+        const int thread = omp_get_thread_num();
+        SampleConverter converter(fixed);
+        for (const Deposits<float>& batch : deposits[static_cast<std::size_t>(thread)])
+            accumulator.add(batch, converter, thread);
+    }
+}
+
+/// The same sums as when one thread adds one deposit after the other; where they round, within one in a hundred.
+bool sums_agree(const Framebuffer& sums, const Framebuffer& expected, bool is_exact) {
+    if (is_exact) return sums.hash() == expected.hash();
+    return std::equal(sums.sums().begin(), sums.sums().end(), expected.sums().begin(),
+                      [](std::int64_t a, std::int64_t b) { return std::abs(a - b) <= b / 100; });
+}
+
+void accumulate(benchmark::State& state, const Kind& kind, Pixels pixels) {
+    const auto threads = static_cast<int>(state.range(0));
+    const auto deposits = deposits_of_threads(pixels, threads);
+    Framebuffer framebuffer = empty_framebuffer();
+    Framebuffer expected = empty_framebuffer();
+    auto accumulator = make_accumulator<float>(kind.accumulator, framebuffer, threads);
+    add_all(*accumulator, deposits, framebuffer.fixed_point());
+    accumulator->finish();
+    for (const auto& of_thread : deposits) {
+        SampleConverter converter(expected.fixed_point());
+        for (const Deposits<float>& batch : of_thread)
+            for (std::size_t i = 0; i < batch.count(); ++i)
+                expected.add(batch.pixel(i), converter.convert<float>(batch.radiance(i)));
+    }
+    if (!agree(state, sums_agree(framebuffer, expected, kind.is_exact), "the sums are wrong")) return;
+
+    // What finish() does once at the end of a render is not timed.
+    accumulator = make_accumulator<float>(kind.accumulator, framebuffer, threads);
+    for (auto _ : state) add_all(*accumulator, deposits, framebuffer.fixed_point());
+    std::size_t count = 0;
+    for (const auto& of_thread : deposits)
+        for (const Deposits<float>& batch : of_thread) count += batch.count();
+    const double own_bytes =
+        static_cast<double>(accumulator->bytes()) / static_cast<double>(paper_scene().pixel_count());
+    count_rays(state, static_cast<std::int64_t>(count), kDepositBytes + (own_bytes > 0 ? own_bytes : kSumBytes));
+}
+
+// Layouts of the framebuffer.
+
+/// Writes down the deposits in their order.
+class Recorder : public AnyAccumulator {
+  public:
+    void add(const Deposits<float>& deposits, SampleConverter&, int) override {
+        for (std::size_t i = 0; i < deposits.count(); ++i) all_.push_back({deposits.pixel(i), deposits.radiance(i)});
+    }
+    std::vector<Deposit>& all() { return all_; }
+
+  private:
+    std::vector<Deposit> all_;
+};
+
+/// The samples of an image in the order in which the paper's pool ends them.
+std::vector<Deposit> pool_order() {
+    constexpr PoolSettings kPool{.scope = PoolScope::Shared, .refill = Refill::Drain, .camera = CameraStage::Staged};
+    RenderSettings settings;
+    settings.end_sample = 4;
+    Recorder recorder;
+    const RenderContext<float> context{
+        paper_scene(), settings, kPool, random_seed(settings.seed), StageRig<float>::roomy(), recorder};
+    InPlacePool<kPaper, float> pool(PoolSettings::kSharedCapacity, static_cast<std::size_t>(kPool.batch), 0);
+    std::vector<RoundLog> logs(1, RoundLog(false));
+    render_shared_pool<kPaper, Lanes, NoWorkCount, Splitting::Off>(context, pool, logs);
+    return std::move(recorder.all());
+}
+
+enum class Order { Pixels, Pool };
+
+const std::vector<Deposits<float>>& deposits_in(Order order) {
+    const auto make = [](bool is_sorted) {
+        std::vector<Deposit> deposits = pool_order();
+        if (is_sorted)
+            std::stable_sort(deposits.begin(), deposits.end(),
+                             [](const Deposit& a, const Deposit& b) { return a.pixel < b.pixel; });
+        return batches(deposits);
+    };
+    static const std::vector<Deposits<float>> in_pixel_order = make(true);
+    static const std::vector<Deposits<float>> in_pool_order = make(false);
+    return order == Order::Pixels ? in_pixel_order : in_pool_order;
+}
+
+/// The twin of OwnedInt64 whose sums lie in three planes.
+class Planes : public AnyAccumulator {
+  public:
+    explicit Planes(Framebuffer& framebuffer) : framebuffer_(framebuffer) {
+        for (auto& plane : planes_) plane.resize(framebuffer.sums().size() / 3);
+    }
+    void add(const Deposits<float>& deposits, SampleConverter& converter, int) override {
+        for (std::size_t i = 0; i < deposits.count(); ++i) {
+            const FixedRgb fixed = converter.convert<float>(deposits.radiance(i));
+            const std::size_t pixel = deposits.pixel(i);
+            for (int k = 0; k < 3; ++k) planes_[k][pixel] += fixed[k];
+        }
+    }
+    void finish() override {
+        for (std::size_t i = 0; i < planes_[0].size(); ++i)
+            framebuffer_.add(static_cast<std::int64_t>(i), {planes_[0][i], planes_[1][i], planes_[2][i]});
+    }
+
+  private:
+    Framebuffer& framebuffer_;
+    std::vector<std::int64_t> planes_[3];
+};
+
+std::unique_ptr<AnyAccumulator> interleaved(Framebuffer& framebuffer) {
+    return std::make_unique<OwnedInt64<float>>(framebuffer);
+}
+std::unique_ptr<AnyAccumulator> planar(Framebuffer& framebuffer) {
+    return std::make_unique<Planes>(framebuffer);
+}
+
+struct Layout {
+    const char* name;
+    std::unique_ptr<AnyAccumulator> (*make)(Framebuffer& framebuffer);
+};
+constexpr Layout kLayouts[] = {{"interleaved", interleaved}, {"planar", planar}};
+
+std::string hash_of(const Layout& layout, const std::vector<Deposits<float>>& deposits) {
+    Framebuffer framebuffer = empty_framebuffer();
+    const auto accumulator = layout.make(framebuffer);
+    SampleConverter converter(framebuffer.fixed_point());
+    for (const Deposits<float>& batch : deposits) accumulator->add(batch, converter, 0);
+    accumulator->finish();
+    return framebuffer.hash();
+}
+
+void fill_framebuffer(benchmark::State& state, const Layout& layout, Order order) {
+    const std::vector<Deposits<float>>& deposits = deposits_in(order);
+    if (!agree(state, hash_of(layout, deposits) == hash_of(kLayouts[0], deposits_in(Order::Pixels)),
+               "the sums differ from the interleaved ones in pixel order"))
+        return;
+    Framebuffer framebuffer = empty_framebuffer();
+    const auto accumulator = layout.make(framebuffer);
+    SampleConverter converter(framebuffer.fixed_point());
+    for (auto _ : state)
+        for (const Deposits<float>& batch : deposits) accumulator->add(batch, converter, 0);
+    std::size_t count = 0;
+    for (const Deposits<float>& batch : deposits) count += batch.count();
+    count_rays(state, static_cast<std::int64_t>(count), kDepositBytes + kSumBytes);
+}
+
+}  // namespace
+}  // namespace raypool
+
+int main(int argc, char** argv) {
+    using namespace raypool;
+    if (!begin_benchmarks(argc, argv)) return 2;
+    omp_set_dynamic(0);
+    for (const Kind& kind : kKinds) {
+        for (const Pixels pixels : {Pixels::Own, Pixels::Same}) {
+            auto* row = add_row(std::string("accumulate/") + kind.name + (pixels == Pixels::Own ? "/own" : "/same"),
+                                [&kind, pixels](benchmark::State& state) { accumulate(state, kind, pixels); });
+            row->ArgName("threads")->Arg(1);
+            if (pixels == Pixels::Own || kind.may_share) row->Arg(2);
+        }
+    }
+    for (const Layout& layout : kLayouts) {
+        for (const Order order : {Order::Pixels, Order::Pool}) {
+            add_row(
+                std::string("framebuffer/") + layout.name + (order == Order::Pixels ? "/pixel_order" : "/pool_order"),
+                [&layout, order](benchmark::State& state) { fill_framebuffer(state, layout, order); });
+        }
+    }
+    benchmark::RunSpecifiedBenchmarks();
+}
