@@ -46,15 +46,15 @@ def depth_time(run, rows):
             if refused:
                 axis.plot(refused, [0.93] * len(refused), transform=axis.get_xaxis_transform(), color=COLOURS[i],
                           marker="x", markersize=10, markeredgewidth=2.5, linestyle="none")
-                axis.text(refused[0], 0.97, f"{engine}: refused", transform=axis.get_xaxis_transform(), fontsize=8.5,
-                          ha="left", va="bottom", color=COLOURS[i])
+                axis.text(refused[-1], 0.96, f"{engine}: refused", transform=axis.get_xaxis_transform(), fontsize=8.5,
+                          ha="right", va="bottom", color=COLOURS[i])
         axis.set_xscale("log")
         axis.set_xlabel("depth: most segments of a path")
         axis.set_title(f"{distinct(of_kind, 'scene')[0]}: {paths}")
-        axis.set_ylim(0, 1.25 * max(row["ns_per_segment"] for row in of_kind if row["ns_per_segment"] is not None))
+        axis.set_ylim(0, 1.3 * max(row["ns_per_segment"] for row in of_kind if row["ns_per_segment"] is not None))
     left.xaxis.set_major_formatter(plt.FuncFormatter(lambda x, _: f"{x:g}"))
     left.set_ylabel("nanoseconds for a segment")
-    left.legend(loc="upper center", ncol=4, columnspacing=1, handlelength=2.2)
+    left.legend(loc="upper center", ncol=2, handlelength=3)
     return figure
 
 
