@@ -128,8 +128,9 @@ Cachegrind run_cachegrind(const std::vector<std::string>& arguments) {
     const auto is_engine = [](const std::string& name) {
         return name.find("raypool::wavefront::") != std::string::npos && name.find("::finish(") == std::string::npos;
     };
-    const auto is_adding = [&](const std::string& name) {
-        return is_engine(name) && name.find("Int64<") != std::string::npos && name.find("::add(") != std::string::npos;
+    const auto is_adding = [](const std::string& name) {
+        return name.find("raypool::wavefront::add_integers<") != std::string::npos ||
+               (name.find("Int64<") != std::string::npos && name.find(">::add(") != std::string::npos);
     };
     const auto read = [&](const auto& is_wanted) {
         std::ifstream file(counts);

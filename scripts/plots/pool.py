@@ -58,11 +58,11 @@ def rounds(run, rows):
                                  ("drain", "drained, then refilled", {"color": BLUE, "linestyle": "-"})):
         here = where(rows, refill=refill)
         left.plot([row["round"] for row in here], [row["records_in"] for row in here], linewidth=1.8, label=label, **style)
-    left.set_ylim(bottom=0)
+    left.set_ylim(0, 1.2 * max([row["records_in"] for row in rows], default=1))
     left.yaxis.set_major_formatter(lambda value, _: f"{value / 1000:g}")
     left.set_xlabel("round")
     left.set_ylabel("thousand records in the pool")
-    left.legend(loc="upper right")
+    left.legend(loc="upper center", ncol=2)
 
     drained = where(rows, refill="drain")
     by_depth = sorted(grouped(drained, "depth").items())

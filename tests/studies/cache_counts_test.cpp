@@ -69,7 +69,9 @@ TEST(HardwareCounters, CountWhatIsReadOrSayThatTheyAreNotThere) {
         for (int i = 0; i < 4096; ++i) (void)memory[i];
     });
     EXPECT_EQ(counts.has_value(), is_called);
-    if (counts && counts->reads) EXPECT_GE(*counts->reads, 4096);
+    if (counts && counts->reads) {
+        EXPECT_GE(*counts->reads, 4096);
+    }
 }
 
 TEST(RecordPass, CostsSomethingForEachRecordOfAnySizeOfPool) {
