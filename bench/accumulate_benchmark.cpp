@@ -147,8 +147,8 @@ std::vector<Deposit> pool_order() {
     const RenderContext<float> context{
         paper_scene(), settings, kPool, random_seed(settings.seed), StageRig<float>::roomy(), recorder};
     InPlacePool<kPaper, float> pool(PoolSettings::kSharedCapacity, static_cast<std::size_t>(kPool.batch), 0);
-    std::vector<RoundLog> logs(1, RoundLog(false));
-    render_shared_pool<kPaper, Lanes, NoWorkCount, Splitting::Off>(context, pool, logs);
+    ThreadRounds rounds(1);
+    render_shared_pool<kPaper, Lanes, NoWorkCount, Splitting::Off>(context, pool, rounds);
     return std::move(recorder.all());
 }
 
