@@ -48,7 +48,7 @@ def framebuffer(run, rows):
         here = where(clock, engine=engine, width=width, threads=threads)
         groups.append((f"{engine}\n{size_text(here[0])} of sums, {threads:.0f} thread{'s' if threads > 1 else ''}", here))
     pairs(left, sorted(groups, key=lambda group: group[0].split("\n")[0]), ns_per_sample)
-    left.set_title("time")
+    left.set_title("time", loc="left")
     left.set_xlabel("nanoseconds of a thread for each sample")
 
     groups = []
@@ -59,9 +59,9 @@ def framebuffer(run, rows):
     if counted:
         right = axes[0][1]
         pairs(right, sorted(groups, key=lambda group: (group[0].split("\n")[0], "adding" in group[0])), misses_percent)
-        right.set_title(f"first-level cache misses, by {counted[0]['source']}")
+        right.set_title(f"first-level cache misses, by {counted[0]['source']}", loc="left")
         right.set_xlabel("% of accesses to data")
-    left.legend(loc="lower right")
+    left.legend(loc="lower right", bbox_to_anchor=(1, 1), ncol=2)
     return figure
 
 
