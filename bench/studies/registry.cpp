@@ -11,6 +11,9 @@ namespace raypool::studies {
 std::vector<std::unique_ptr<Study>> all_studies() {
     std::vector<std::unique_ptr<Study>> studies;
     studies.push_back(schedules_study());
+    studies.push_back(scaling_study());
+    studies.push_back(load_study());
+    studies.push_back(replay_study());
     return studies;
 }
 

@@ -8,5 +8,8 @@
 namespace raypool::studies {
 
 std::unique_ptr<Study> schedules_study();
+std::unique_ptr<Study> load_study();
+std::unique_ptr<Study> replay_study();
+std::unique_ptr<Study> scaling_study();
 
 }  // namespace raypool::studies
