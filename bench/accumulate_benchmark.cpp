@@ -31,8 +31,12 @@ struct Kind {
     bool may_share;  ///< threads may add to one pixel
 };
 constexpr Kind kKinds[] = {
-    {"owned", Accumulator::OwnedInt64, true, false},           {"atomic", Accumulator::AtomicInt64, true, true},
-    {"private", Accumulator::PrivateInt64, true, true},        {"atomic_float", Accumulator::AtomicFloat, false, true},
+    {"owned", Accumulator::OwnedInt64, true, false},
+    {"atomic", Accumulator::AtomicInt64, true, true},
+    {"private", Accumulator::PrivateInt64, true, true},
+    {"owned_planar", Accumulator::OwnedPlanarInt64, true, false},
+    {"atomic_planar", Accumulator::AtomicPlanarInt64, true, true},
+    {"atomic_float", Accumulator::AtomicFloat, false, true},
     {"atomic_double", Accumulator::AtomicDouble, false, true},
 };
 
@@ -167,45 +171,15 @@ const std::vector<Deposits<float>>& deposits_in(Order order) {
     return order == Order::Pixels ? in_pixel_order : in_pool_order;
 }
 
-/// The twin of OwnedInt64 whose sums lie in three planes.
-class Planes : public AnyAccumulator {
-  public:
-    explicit Planes(Framebuffer& framebuffer) : framebuffer_(framebuffer) {
-        for (auto& plane : planes_) plane.resize(framebuffer.sums().size() / 3);
-    }
-    void add(const Deposits<float>& deposits, SampleConverter& converter, int) override {
-        for (std::size_t i = 0; i < deposits.count(); ++i) {
-            const FixedRgb fixed = converter.convert<float>(deposits.radiance(i));
-            const std::size_t pixel = deposits.pixel(i);
-            for (int k = 0; k < 3; ++k) planes_[k][pixel] += fixed[k];
-        }
-    }
-    void finish() override {
-        for (std::size_t i = 0; i < planes_[0].size(); ++i)
-            framebuffer_.add(static_cast<std::int64_t>(i), {planes_[0][i], planes_[1][i], planes_[2][i]});
-    }
-
-  private:
-    Framebuffer& framebuffer_;
-    std::vector<std::int64_t> planes_[3];
-};
-
-std::unique_ptr<AnyAccumulator> interleaved(Framebuffer& framebuffer) {
-    return std::make_unique<OwnedInt64<float>>(framebuffer);
-}
-std::unique_ptr<AnyAccumulator> planar(Framebuffer& framebuffer) {
-    return std::make_unique<Planes>(framebuffer);
-}
-
 struct Layout {
     const char* name;
-    std::unique_ptr<AnyAccumulator> (*make)(Framebuffer& framebuffer);
+    Accumulator accumulator;
 };
-constexpr Layout kLayouts[] = {{"interleaved", interleaved}, {"planar", planar}};
+constexpr Layout kLayouts[] = {{"interleaved", Accumulator::OwnedInt64}, {"planar", Accumulator::OwnedPlanarInt64}};
 
 std::string hash_of(const Layout& layout, const std::vector<Deposits<float>>& deposits) {
     Framebuffer framebuffer = empty_framebuffer();
-    const auto accumulator = layout.make(framebuffer);
+    const auto accumulator = make_accumulator<float>(layout.accumulator, framebuffer, 1);
     SampleConverter converter(framebuffer.fixed_point());
     for (const Deposits<float>& batch : deposits) accumulator->add(batch, converter, 0);
     accumulator->finish();
@@ -218,7 +192,7 @@ void fill_framebuffer(benchmark::State& state, const Layout& layout, Order order
                "the sums differ from the interleaved ones in pixel order"))
         return;
     Framebuffer framebuffer = empty_framebuffer();
-    const auto accumulator = layout.make(framebuffer);
+    const auto accumulator = make_accumulator<float>(layout.accumulator, framebuffer, 1);
     SampleConverter converter(framebuffer.fixed_point());
     for (auto _ : state)
         for (const Deposits<float>& batch : deposits) accumulator->add(batch, converter, 0);

@@ -85,6 +85,7 @@ struct alignas(64) ThreadWork {
     std::int64_t box_tests = 0;        ///< with count_work
     std::int64_t primitive_tests = 0;  ///< with count_work
     double busy_s = 0;                 ///< working
+    double processor_s = 0;            ///< on a processor meanwhile; what waits by spinning at barriers is on one too
     double wait_s = 0;                 ///< waiting for the others
 };
 

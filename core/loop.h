@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <ctime>
 
 #include "core/engine.h"
 #include "core/error.h"
@@ -59,6 +60,13 @@ class ProgressBatch {
     std::int64_t batch_ = 0;
 };
 
+/// Processor time of the calling thread, in seconds: what other processes take meanwhile does not count.
+inline double processor_seconds() {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 /// Runs body(ThreadWork&, SampleAudit&) in settings.threads OpenMP threads under settings.schedule, denormals flushed.
 /// The body must end in a worksharing loop with nowait; what a thread then waits for the others is measured here.
 template <class Body>
@@ -83,9 +91,11 @@ RenderReport run_threads(const RenderSettings& settings, Body body) {
         const auto id = static_cast<std::size_t>(omp_get_thread_num());
         ThreadWork work;
         const double begin = omp_get_wtime();
+        const double processor_begin = processor_seconds();
         body(work, audits[id]);
         ends[id] = omp_get_wtime();
         work.busy_s = ends[id] - begin - work.wait_s;
+        work.processor_s = processor_seconds() - processor_begin;
         report.threads[id] = work;
         if (settings.trace != nullptr) settings.trace->lane(static_cast<int>(id)).span("wait", start, begin);
     }

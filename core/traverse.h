@@ -29,6 +29,7 @@ struct WorkCount {
         if (node.bounds[0][0][lane] <= node.bounds[0][1][lane]) box_tests += std::popcount(rays);
     }
     void count_primitives(int rays) { primitive_tests += rays; }
+    void begin_segment() {}  ///< of a path that is followed by itself; a log of every segment needs to know
 };
 
 struct NoWorkCount {
@@ -37,6 +38,7 @@ struct NoWorkCount {
     RAYPOOL_INLINE void count(const auto&) {}
     RAYPOOL_INLINE void count_boxes(const auto&, int, unsigned) {}
     RAYPOOL_INLINE void count_primitives(int) {}
+    RAYPOOL_INLINE void begin_segment() {}
 };
 
 /// Deepest tree: 40 levels of heuristic splits and 24 of halves (bvh.cpp), each leaving width - 1 nodes behind.

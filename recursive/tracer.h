@@ -94,6 +94,7 @@ class Tracer {
     RAYPOOL_INLINE Next advance(Path<Scalar>& path, Path<Scalar>* reflected) {
         if (path_step::bounce(path.step) == static_cast<std::uint32_t>(depth_)) return Next::End;
         ++segments_;
+        work_.begin_segment();
         const Hit<Scalar> hit = closest_hit<needs>(scene_, path.ray, path.leaving_id, work_);
         if (hit.primitive_id == kNoPrimitive) {
             return finish(path.throughput.cwiseProduct(sky_radiance<Scalar>(scene_.sky, path.ray.direction)));

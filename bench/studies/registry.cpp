@@ -10,10 +10,13 @@ namespace raypool::studies {
 
 std::vector<std::unique_ptr<Study>> all_studies() {
     std::vector<std::unique_ptr<Study>> studies;
+    studies.push_back(load_study());
+    studies.push_back(replay_study());
+    studies.push_back(schedules_study());
+    studies.push_back(scaling_study());
+    studies.push_back(pool_study());
     studies.push_back(framebuffer_study());
     studies.push_back(ladder_study());
-    studies.push_back(pool_study());
-    studies.push_back(schedules_study());
     studies.push_back(needs_study());
     studies.push_back(depth_study());
     return studies;

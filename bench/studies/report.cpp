@@ -82,7 +82,8 @@ std::string summary_page(const json& run) {
     page += fmt::format("\n{}. Finished {}; the host took {:.1f} % of the processor time for others.\n",
                         machine_line(run.at("environment")), text_of(run, "finished"),
                         100 * run.at("stolen").get<double>());
-    page += fmt::format("Flags and OpenMP variables are in run.json, every row in data.csv. To repeat: `{}`\n", command);
+    page +=
+        fmt::format("Flags and OpenMP variables are in run.json, every row in data.csv. To repeat: `{}`\n", command);
     return page;
 }
 

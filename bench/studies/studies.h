@@ -13,5 +13,8 @@ std::unique_ptr<Study> ladder_study();
 std::unique_ptr<Study> needs_study();
 std::unique_ptr<Study> pool_study();
 std::unique_ptr<Study> schedules_study();
+std::unique_ptr<Study> load_study();
+std::unique_ptr<Study> replay_study();
+std::unique_ptr<Study> scaling_study();
 
 }  // namespace raypool::studies

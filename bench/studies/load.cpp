@@ -1,0 +1,241 @@
+// Work of each thread under every way of sharing it out: the paper's Figure 5, from counted work, and the same of
+// pools.
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "bench/studies/renders.h"
+#include "bench/studies/replay_ways.h"
+#include "bench/studies/statistics.h"
+#include "bench/studies/studies.h"
+#include "wavefront/settings.h"
+
+namespace raypool::studies {
+
+namespace {
+
+/// A way of the recursive engine.
+struct Way {
+    const char* name;
+    const char* grain;
+    const char* schedule;
+};
+constexpr Way kWays[] = {
+    {"lines, static (default)", "line", "static"},
+    {"lines, static,1", "line", "static,1"},
+    {"lines, dynamic", "line", "dynamic"},
+    {"lines, guided", "line", "guided"},
+    {"tiles of 16, dynamic", "tile:16", "dynamic"},
+    {"pixels, static", "pixel", "static"},
+    {"pixels, static,1 (collapse)", "pixel", "static,1"},
+    {"pixels, dynamic", "pixel", "dynamic"},
+};
+constexpr const char* kBasic = kWays[0].name;
+constexpr const char* kStatic1 = kWays[1].name;
+constexpr const char* kCollapse = kWays[6].name;
+constexpr const char* kShares = "one of all paths, equal shares";
+
+class Load : public Study {
+  public:
+    [[nodiscard]] std::string name() const override { return "load"; }
+    [[nodiscard]] std::string question() const override {
+        return "How evenly does each way of sharing out the image load the threads, counted in rays and in work?";
+    }
+    [[nodiscard]] std::vector<Column> columns() const override {
+        return {{"group", ColumnType::Text, "recursion or pool"},
+                {"way", ColumnType::Text, "grain and schedule, or rung of the ladder"},
+                {"source", ColumnType::Text,
+                 "counted: by a real run of so many threads; replayed: from the counted costs of paths, where a real "
+                 "run with more threads than cores would show the operating system's time slices"},
+                {"threads", ColumnType::Count, "of the loop"},
+                {"thread", ColumnType::Count, "which, from 0"},
+                {"segments", ColumnType::Count, "rays that it traced"},
+                {"box_tests", ColumnType::Count, "ray against box"},
+                {"primitive_tests", ColumnType::Count, "ray against primitive"},
+                {"tests", ColumnType::Count, "both: the unit of work"},
+                {"busy_s", ColumnType::Real, "working; no more threads than cores only"},
+                {"wait_s", ColumnType::Real, "waiting for others; no more threads than cores only"},
+                {"hash", ColumnType::Text, "counted: of the sums of the image"}};
+    }
+
+    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
+        const auto scene = study_scene(options.scene, choose(options.width, options.is_quick, 240, 800));
+        RenderSettings settings;
+        settings.end_sample = choose(options.spp, options.is_quick, 4, 8);
+        settings.depth = static_cast<std::int32_t>(choose(options.depth, false, 0, 50));
+        settings.seed = options.seed;
+        settings.threads = static_cast<int>(choose(options.threads, false, 0, 8));
+        // Counts do not change from run to run; times do.
+        const bool is_timed = settings.threads <= core_count();
+        const int repeats = is_timed ? static_cast<int>(choose(options.repeats, options.is_quick, 3, 5)) : 1;
+
+        std::vector<Case> cases;
+        std::vector<Way> replayed;
+        const auto add = [&](const std::string& group, const NamedEngine& engine, const Way& way) {
+            settings.grain = parse_grain(way.grain);
+            settings.schedule = parse_schedule(way.schedule);
+            cases.push_back({fmt::format("{}, {}", group, way.name), image_of(*scene, settings), repeats,
+                             [=, this, name = std::string(way.name)] {
+                                 return count(group, name, *engine.engine, *scene, settings);
+                             }});
+        };
+        for (const Way& way : kWays) {
+            if (is_timed || parse_schedule(way.schedule).kind == LoopSchedule::Kind::Static) {
+                add("recursion", recursive_engine(), way);
+            } else {
+                replayed.push_back(way);
+            }
+        }
+        for (const NamedEngine& rung : ladder_engines(settings.threads))
+            add("pool", rung, {rung.name.c_str(), "line", "static,1"});
+        add("pool", fused_pool(), {"fused, lines, static", "line", "static"});
+        add("pool", fused_pool(), {"fused, pixels, static,1", "pixel", "static,1"});
+        cases.push_back({"replayed", "", 1, [=, this] { return replay_ways(*scene, settings, replayed); }});
+        return cases;
+    }
+
+    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions& options) const override;
+
+  private:
+    std::vector<Row> count(const std::string& group, const std::string& way, const Engine& engine,
+                           const StudyScene& scene, RenderSettings settings) const {
+        settings.count_work = true;
+        const Measured counted = measure(engine, scene, settings);
+        settings.count_work = false;
+        const bool is_timed = settings.threads <= core_count();
+        const RenderReport timed = is_timed ? measure(engine, scene, settings).report : RenderReport();
+        std::vector<Row> rows;
+        for (std::size_t i = 0; i < counted.report.threads.size(); ++i) {
+            const ThreadWork& work = counted.report.threads[i];
+            rows.push_back(sparse_row(columns(), {{"group", group},
+                                                  {"way", way},
+                                                  {"source", "counted"},
+                                                  {"threads", settings.threads},
+                                                  {"thread", i},
+                                                  {"segments", work.segments},
+                                                  {"box_tests", work.box_tests},
+                                                  {"primitive_tests", work.primitive_tests},
+                                                  {"tests", work.box_tests + work.primitive_tests},
+                                                  {"busy_s", is_timed ? Value(timed.threads[i].busy_s) : Value()},
+                                                  {"wait_s", is_timed ? Value(timed.threads[i].wait_s) : Value()},
+                                                  {"hash", counted.hash}}));
+        }
+        return rows;
+    }
+
+    /// Loops over items that real threads would take as they please, and the pool of the paper's description: all
+    /// paths of the image, each round in equal shares.
+    std::vector<Row> replay_ways(const StudyScene& scene, const RenderSettings& settings,
+                                 const std::vector<Way>& loops) const {
+        const PathCosts costs = record_costs(scene, settings);
+        const int threads = settings.threads;
+        std::vector<Row> rows;
+        const auto add = [&](const char* group, const std::string& way, std::size_t thread, const Tally& tally,
+                             bool is_split) {
+            rows.push_back(
+                sparse_row(columns(), {{"group", group},
+                                       {"way", way},
+                                       {"source", "replayed"},
+                                       {"threads", threads},
+                                       {"thread", thread},
+                                       {"segments", tally.segments},
+                                       {"box_tests", is_split ? Value(tally.box_tests) : Value()},
+                                       {"primitive_tests", is_split ? Value(tally.primitive_tests) : Value()},
+                                       {"tests", tally.tests()}}));
+        };
+        for (const Way& way : loops) {
+            const ReplayWay loop = loop_way(way.name, way.grain, way.schedule);
+            const Replayed result = prepare(loop, costs, kTests).replay(threads, {});
+            std::vector<Tally> work(static_cast<std::size_t>(threads));
+            const std::vector<Tally> items = costs.items(loop.grain);
+            for (std::size_t i = 0; i < items.size(); ++i)
+                work[static_cast<std::size_t>(result.owner[i])].add(items[i]);
+            for (std::size_t i = 0; i < work.size(); ++i) add("recursion", way.name, i, work[i], true);
+        }
+        const ReplayWay shares{kShares, ReplayWay::Kind::Drained, {}, {}, 0, 1};
+        const std::vector<double> segments = prepare(shares, costs, {1, 0}).replay(threads, {}).work;
+        const std::vector<double> tests = prepare(shares, costs, kTests).replay(threads, {}).work;
+        for (std::size_t i = 0; i < segments.size(); ++i)
+            add("pool", kShares, i, {static_cast<std::int64_t>(segments[i]), static_cast<std::int64_t>(tests[i]), 0},
+                false);
+        return rows;
+    }
+};
+
+/// The first run of a way; counts are the same in all.
+Table first_run(const Table& data, const Value& way) {
+    return data.where("way", way).where("repeat", 0);
+}
+
+Summary Load::summarise(const Table& data, const StudyOptions&) const {
+    Summary summary;
+    const int threads = static_cast<int>(data.numbers("threads").at(0));
+    TextTable table{fmt::format("Load of {} threads", threads),
+                    {"way", "source", "tests: max/mean", "tests: CV", "rays: max/mean", "rays: CV", "busy: max/mean"},
+                    {}};
+    std::vector<Value> ways = data.where("group", "recursion").distinct("way");
+    const std::vector<Value> pools = data.where("group", "pool").distinct("way");
+    ways.insert(ways.end(), pools.begin(), pools.end());
+    for (const Value& way : ways) {
+        const Table run = first_run(data, way);
+        const std::vector<double> tests = run.numbers("tests");
+        const std::vector<double> rays = run.numbers("segments");
+        const std::vector<double> busy = run.numbers("busy_s");
+        table.rows.push_back(
+            {way.get<std::string>(), run.distinct("source").at(0).get<std::string>(),
+             fmt::format("{:.3f}", max_over_mean(tests)), fmt::format("{:.3f}", coefficient_of_variation(tests)),
+             fmt::format("{:.3f}", max_over_mean(rays)), fmt::format("{:.3f}", coefficient_of_variation(rays)),
+             busy.empty() ? "" : fmt::format("{:.3f}", max_over_mean(busy))});
+    }
+    summary.tables.push_back(table);
+
+    const auto load = [&](const char* way, const char* unit) {
+        return max_over_mean(first_run(data, way).numbers(unit));
+    };
+    const double basic = load(kBasic, "tests");
+    const double static1 = load(kStatic1, "tests");
+    const double collapse = load(kCollapse, "tests");
+    summary.findings.push_back(
+        {"Figure 5", "the default schedule of lines is the worst balanced, static,1 better, pixel by pixel the best",
+         "histograms of 8 threads, width 800",
+         fmt::format("max/mean of tests {:.3f}, {:.3f} and {:.3f}, {} threads", basic, static1, collapse, threads),
+         threads == 1                            ? Verdict::CannotTell
+         : basic > static1 && static1 > collapse ? Verdict::Holds
+                                                 : Verdict::DoesNotHold,
+         threads == 1 ? "one thread has nothing to share out" : ""});
+    const double rays = load(kShares, "segments");
+    const double tests = load(kShares, "tests");
+    summary.findings.push_back(
+        {"", "a pool that shares out its rays evenly shares out its work evenly", "",
+         fmt::format("equal shares of every round: max/mean of rays {:.3f}, of tests {:.3f}, {} threads", rays, tests,
+                     threads),
+         threads == 1    ? Verdict::CannotTell
+         : tests <= 1.02 ? Verdict::Holds
+                         : Verdict::DoesNotHold,
+         threads == 1 ? "one thread has nothing to share out" : ""});
+
+    summary.pictures.push_back(
+        {"load", fmt::format("Work of each of {} threads", threads),
+         "Each bar is a thread's box and primitive tests, each white dot the rays that it traced, both over the mean "
+         "(the line at 1). The number is max/mean of tests: 1 is perfect balance, and all threads wait for the tallest "
+         "bar. What to see: the default schedule is the worst and single pixels the best; a pool of equal shares has "
+         "its dots on the line and its bars far from it: equal rays are not equal work."});
+    summary.notes.push_back(
+        "Static schedules, and every pool, are counted in a real run. Loops that hand out work as threads ask for it "
+        "are counted too where there are enough cores, and replayed from the recorded costs of all paths where there "
+        "are not. Pools count the tests that their streams and packets make, replays those of single rays.");
+    summary.notes.push_back(
+        "Pools: lines, or batches of the shared pools, in turn (static,1) where nothing else is said. What a thread of "
+        "a "
+        "shared pool traces depends on who fetches camera rays first, so its counts differ a little from run to run.");
+    return summary;
+}
+
+}  // namespace
+
+std::unique_ptr<Study> load_study() {
+    return std::make_unique<Load>();
+}
+
+}  // namespace raypool::studies

@@ -1,0 +1,102 @@
+#include "bench/studies/openmp_costs.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "bench/studies/renders.h"
+#include "bench/studies/statistics.h"
+#include "core/loop.h"
+
+namespace raypool::studies {
+
+namespace {
+
+/// Arithmetic that no compiler can shorten: each step needs the one before.
+std::uint64_t compute(std::int64_t steps) {
+    std::uint64_t x = 0x9e3779b97f4a7c15U;
+    for (std::int64_t i = 0; i < steps; ++i) x = (x ^ (x >> 29U)) * 0xbf58476d1ce4e5b9U + static_cast<std::uint64_t>(i);
+    return x;
+}
+
+volatile std::uint64_t sink;
+
+/// Short batches, so that a thread which is put to sleep spoils one of them.
+template <class Function>
+double median_of_batches(Function function) {
+    constexpr int kBatches = 31;
+    std::vector<double> seconds;
+    for (int i = 0; i < kBatches; ++i) seconds.push_back(function());
+    return median(seconds);
+}
+
+}  // namespace
+
+double chunk_fetch_seconds(int threads) {
+    constexpr std::int64_t kChunks = 20'000;
+    return median_of_batches([=] {
+        double seconds = 0;
+#pragma omp parallel num_threads(threads) reduction(+ : seconds)
+        {
+            const double start = processor_seconds();
+#pragma omp for schedule(dynamic, 1) nowait
+            for (std::int64_t i = 0; i < kChunks; ++i) asm volatile("" ::: "memory");
+            seconds = processor_seconds() - start;
+        }
+        return seconds / static_cast<double>(kChunks);
+    });
+}
+
+double barrier_seconds(int threads) {
+    constexpr int kBarriers = 500;
+    return median_of_batches([=] {
+        double seconds = 0;
+#pragma omp parallel num_threads(threads)
+        {
+#pragma omp barrier
+            const double start = omp_get_wtime();
+            for (int i = 0; i < kBarriers; ++i) {
+#pragma omp barrier
+            }
+#pragma omp master
+            seconds = omp_get_wtime() - start;
+        }
+        return seconds / kBarriers;
+    });
+}
+
+double compute_loop_seconds(int threads, double seconds) {
+    constexpr double kStepsPerSecond = 5e8;  // roughly, of one core
+    const auto steps = static_cast<std::int64_t>(seconds * kStepsPerSecond);
+    const double start = omp_get_wtime();
+#pragma omp parallel num_threads(threads)
+    {
+        const std::uint64_t result = compute(steps);
+#pragma omp critical
+        sink = result;
+    }
+    return omp_get_wtime() - start;
+}
+
+ReplayCosts OpenMpCosts::at(int thread_count) const {
+    constexpr double kBarriersOfARound = 3;
+    for (std::size_t i = 0; i < threads.size(); ++i)
+        if (threads[i] >= thread_count) return {fetch_s[i], kBarriersOfARound * barrier_s[i]};
+    const double deeper = std::log2(thread_count) / std::max(1.0, std::log2(threads.back()));
+    return {fetch_s.back(), kBarriersOfARound * barrier_s.back() * deeper};
+}
+
+OpenMpCosts measure_openmp_costs(int most_threads) {
+    OpenMpCosts costs;
+    for (const int threads : thread_counts(std::min(core_count(), most_threads))) {
+        costs.threads.push_back(threads);
+        costs.fetch_s.push_back(chunk_fetch_seconds(threads));
+        costs.barrier_s.push_back(barrier_seconds(threads));
+    }
+    return costs;
+}
+
+}  // namespace raypool::studies

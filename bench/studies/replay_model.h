@@ -1,0 +1,77 @@
+/// What a schedule makes of work whose costs are known, for any number of threads: balance without a machine.
+///
+/// Costs may have any unit, and all results have it. Iterations are handed out as OpenMP's runtime does (GNU's for
+/// guided, where runtimes differ), threads run at one speed, and nothing is known of memory: a replay is what the
+/// balance of work, the fetching of chunks and the barriers allow, and no more. Pure functions.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace raypool::studies {
+
+struct ReplaySchedule {
+    enum class Kind : std::uint8_t {
+        Static,
+        Dynamic,
+        Guided,
+        /// Dynamic, the dearest item first (Graham, "Bounds on Multiprocessing Timing Anomalies", 1969).
+        LongestFirst,
+        /// Half of what is left in equal chunks, one for each thread, again and again (Hummel, Schonberg and Flynn,
+        /// "Factoring", 1992).
+        Factoring
+    };
+    Kind kind = Kind::Static;
+    std::int64_t chunk = 0;  ///< 0: OpenMP's default for the kind; of no meaning to the last two kinds
+};
+
+/// What running in parallel costs by itself.
+struct ReplayCosts {
+    double fetch = 0;    ///< of a chunk, to the thread that fetches it; static schedules fetch none
+    double barrier = 0;  ///< of the end of a round
+};
+
+struct Replayed {
+    std::vector<double> work;         ///< of each thread, without the costs of running in parallel
+    std::vector<std::int32_t> owner;  ///< of each item; empty for rounds
+    double makespan = 0;              ///< until the last thread is done, all costs included
+
+    [[nodiscard]] double total() const;
+    /// Work over the time of all threads: 1 is perfect.
+    [[nodiscard]] double efficiency() const;
+};
+
+/// A loop over items. There is at least one thread.
+Replayed replay(std::span<const double> items, const ReplaySchedule& schedule, int threads,
+                const ReplayCosts& costs = {});
+
+/// The shortest time that any schedule can reach: an equal share, or the dearest item.
+double makespan_bound(std::span<const double> items, int threads);
+
+/// The segments of paths: those of path i are cost[first[i]] ... cost[first[i + 1] - 1], and there is at least one.
+struct SegmentCosts {
+    std::span<const std::uint32_t> first;
+    std::span<const float> cost;
+
+    [[nodiscard]] std::size_t path_count() const { return first.size() - 1; }
+};
+
+/// The rounds of a shared pool that is filled with `capacity` paths in order, and drained: in each, the next segment of
+/// every path that is alive, in order, summed up in batches of `batch`.
+std::vector<std::vector<double>> drained_rounds(const SegmentCosts& segments, std::size_t capacity, std::size_t batch);
+
+/// Rounds with a barrier after each. Threads come to a round in another order each time.
+Replayed replay_rounds(std::span<const std::vector<double>> rounds, const ReplaySchedule& schedule, int threads,
+                       const ReplayCosts& costs = {});
+/// The bound of every round, added up.
+double makespan_bound(std::span<const std::vector<double>> rounds, int threads);
+
+/// Pools of `capacity` paths, one for each thread, refilled as soon as there is room: a thread fetches the next item (a
+/// range of paths) while its pool has room, and then takes every path of the pool through a segment. So many paths are
+/// in threads' hands before anybody knows what they cost. `first_path` holds the first path of each item, and the end.
+Replayed replay_thread_pools(const SegmentCosts& segments, std::span<const std::uint32_t> first_path,
+                             std::size_t capacity, const ReplaySchedule& schedule, int threads,
+                             const ReplayCosts& costs = {});
+
+}  // namespace raypool::studies

@@ -1,0 +1,63 @@
+/// Ways of handing out the image that studies replay, and how recorded costs become what a replay wants.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bench/studies/path_costs.h"
+#include "bench/studies/replay_model.h"
+#include "bench/studies/table.h"
+#include "core/settings_text.h"
+
+namespace raypool::studies {
+
+/// The schedules of a tracer that takes one path at a time, or the pools.
+struct ReplayWay {
+    enum class Kind : std::uint8_t {
+        Loop,        ///< over the items of a grain
+        Drained,     ///< a shared pool in batches, drained, a barrier after each round
+        ThreadPools  ///< a pool for each thread, over the items of a grain
+    };
+    std::string name;
+    Kind kind = Kind::Loop;
+    Grain grain;
+    ReplaySchedule schedule;
+    std::size_t capacity = 0;  ///< of a pool; 0: all paths of the image
+    std::size_t batch = 0;     ///< of a drained pool; 1 with a static schedule: equal contiguous shares
+};
+
+inline ReplaySchedule to_replay(const LoopSchedule& schedule) {
+    using Kind = ReplaySchedule::Kind;
+    constexpr Kind kKinds[] = {Kind::Static, Kind::Dynamic, Kind::Guided};
+    return {kKinds[static_cast<int>(schedule.kind)], schedule.chunk};
+}
+
+/// A way of the real engines, by the texts that users write.
+inline ReplayWay loop_way(std::string name, std::string_view grain, std::string_view schedule) {
+    return {std::move(name), ReplayWay::Kind::Loop, parse_grain(grain), to_replay(parse_schedule(schedule)), 0, 0};
+}
+inline ReplayWay thread_pool_way(std::string name, std::string_view grain, std::string_view schedule,
+                                 std::int64_t capacity) {
+    return {std::move(name),
+            ReplayWay::Kind::ThreadPools,
+            parse_grain(grain),
+            to_replay(parse_schedule(schedule)),
+            static_cast<std::size_t>(capacity),
+            0};
+}
+
+/// A way with everything about the work prepared, so that thread counts are cheap.
+struct PreparedWay {
+    std::function<Replayed(int threads, const ReplayCosts& costs)> replay;
+    std::function<double(int threads)> bound;  ///< the shortest makespan
+};
+PreparedWay prepare(const ReplayWay& way, const PathCosts& costs, const CostModel& model);
+
+/// A row in which the columns named have values, and all others none.
+Row sparse_row(const std::vector<Column>& columns, const std::vector<std::pair<std::string_view, Value>>& values);
+
+}  // namespace raypool::studies
