@@ -45,7 +45,9 @@ void round(Pool& pool, int threads, Visit visit) {
     {
 #pragma omp for schedule(dynamic)
         for (std::int64_t b = 0; b < pool.batch_count(); ++b) visit(b);
-        pool.end_round();
+        pool.end_round([] {
+#pragma omp barrier
+        });
     }
 }
 
