@@ -162,7 +162,8 @@ Summary summarise_framebuffer(const Table& data) {
     summary.pictures.push_back(
         {"framebuffer", "Three sums side by side, or three planes",
          "Left: time of a thread for each sample, median with lowest and highest run, taken in turns." + beside +
-             " What to see: the bars of a pair are of one length, so the layout does not matter. Samples of a pixel "
+             " What to see: the bars of a pair are nearly of one length, so the layout hardly matters. Samples of a "
+             "pixel "
              "end "
              "close together in time, and most of what a pool reads and writes are records."});
     add_notes(summary, counted);

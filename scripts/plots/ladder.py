@@ -70,7 +70,7 @@ def ladder(run, rows):
         axis.set_title(f"{count:.0f} thread{'s' if count > 1 else ''}")
         axis.set_xlabel("nanoseconds of a thread for each ray")
         axis.grid(axis="y", visible=False)
-    axes[0][0].set_xlim(0, longest * (1.6 if longest < limit else 1.9))
+    axes[0][0].set_xlim(0, longest * (1.55 if longest < limit else 1.8))
     axes[0][0].invert_yaxis()
     order = [label for _, label, *_ in PARTS] + [WHOLE[0]]
     shown = [label for label in order if label in labels]
