@@ -163,9 +163,7 @@ Summary summarise_framebuffer(const Table& data) {
         {"framebuffer", "Three sums side by side, or three planes",
          "Left: time of a thread for each sample, median with lowest and highest run, taken in turns." + beside +
              " What to see: the bars of a pair are nearly of one length, so the layout hardly matters. Samples of a "
-             "pixel "
-             "end "
-             "close together in time, and most of what a pool reads and writes are records."});
+             "pixel end close together in time, and most of what a pool reads and writes are records."});
     add_notes(summary, counted);
     return summary;
 }
