@@ -158,7 +158,9 @@ class ReplayStudy : public Study {
                                             {"fetch_ns", 1e9 * openmp.fetch_s[i]},
                                             {"barrier_ns", 1e9 * openmp.barrier_s[i]}}));
 
-        for (const auto& [group, way] : all_ways()) {
+        for (const GroupedWay& grouped : all_ways()) {
+            const auto& group = grouped.group;  // no structured binding: clang 14 has none in parallel regions
+            const ReplayWay& way = grouped.way;
             const PreparedWay tests = prepare(way, costs, kTests);
             const PreparedWay time = prepare(way, costs,
                                              way.kind == ReplayWay::Kind::Loop      ? fit.model
