@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -117,11 +118,13 @@ std::string run_once(Contender& contender, const CompiledScene<float>& scene, co
     return contender.is_peer ? "its own" : framebuffer.hash();
 }
 
-/// Runs all once; the order is turned by `turn`, so that no contender always follows the same other.
+/// Runs all once, by another stride each turn, so that no contender always follows the same other.
 void run_all(std::vector<Contender>& list, std::size_t turn, const CompiledScene<float>& scene,
              const RenderSettings& settings) {
+    std::size_t stride = turn + 1;
+    while (std::gcd(stride, list.size()) != 1) ++stride;
     for (std::size_t i = 0; i < list.size(); ++i) {
-        Contender& contender = list[(i + turn) % list.size()];
+        Contender& contender = list[(turn + i * stride) % list.size()];
         const std::string hash = run_once(contender, scene, settings);
         if (contender.hash.empty()) contender.hash = hash;
         if (contender.hash != hash) contender.hash = "changes";

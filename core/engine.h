@@ -90,7 +90,7 @@ struct alignas(64) ThreadWork {
 };
 
 struct RenderReport {
-    double seconds = 0;  ///< wall clock of the parallel region
+    double seconds = 0;  ///< wall clock of the parallel region, and of making a shared pool
     std::vector<ThreadWork> threads;
     SampleAudit audit;
     std::vector<RoundWork> rounds;  ///< of a wavefront engine, with log_rounds or a trace

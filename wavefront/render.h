@@ -37,9 +37,12 @@ RenderReport render(const CompiledScene<ScalarOf<Real>>& scene, const RenderSett
     } else {
         const std::size_t batch = std::clamp<std::size_t>(static_cast<std::size_t>(pool.batch),
                                                           std::size_t{1} << settings.split_depth, capacity);
+        const double begin = omp_get_wtime();
         const auto shared =
             make_shared_pool<needs, Scalar>(pool.append, capacity, batch, settings.split_depth, settings.threads);
+        const double making_s = omp_get_wtime() - begin;
         report = render_shared_pool<needs, Real, Work, splitting>(context, *shared, rounds);
+        report.seconds += making_s;  // threads make their own pools within the time
         report.pool_bytes =
             shared->bytes() + threads * Stages<needs, Real, Work, splitting>::bytes(context, shared->batch());
     }

@@ -11,6 +11,7 @@
 #include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
 #include "bench/studies/truncation.h"
+#include "bench/studies/verdict.h"
 #include "core/error.h"
 #include "core/scene_reader.h"
 
@@ -220,17 +221,17 @@ class Depth : public Study {
         summary.pictures.push_back(
             {"depth_error", "What a limit of depth cuts off",
              "Left: the part of the paths that a limit cuts. Right: the part of the light that is missing for it, "
-             "counted, not estimated, since both images are made of the same paths. Dotted: the paper's depths. What "
-             "to "
-             "see: how deep is enough is up to the scene. " +
+             "exact "
+             "for the paths rendered, since both images are made of the same. Dotted: the paper's depths. What to see: "
+             "how deep is enough is up to the scene. " +
                  missing_at_five(data.where("kind", kSurvival)) + "A white furnace loses exactly its paths."});
         summary.pictures.push_back(
             {"depth_time", "Cost of a segment by depth",
              "Thread time, median with the lowest and highest run. Left: the scene of the paper, from camera rays only "
              "to the end of all paths. Right: only 16 paths, between two mirrors, followed without end. What to see: "
-             "on the left the limit hardly changes the cost of a segment; the fused pool is the cheapest at every "
-             "depth. With 16 paths the shared pool pays for its barriers, and recursion refuses what its stack cannot "
-             "hold (crosses)."});
+             "on the left, how little the limit changes the cost of a segment, and which engine is the cheapest. On "
+             "the right, what barriers cost a shared pool of 16 paths; a cross is a depth that recursion refuses, "
+             "since its stack cannot hold it."});
         return summary;
     }
 
@@ -316,8 +317,8 @@ class Depth : public Study {
             };
             const std::vector<double> ratio = ratios(seconds("recursive"), seconds("pool"));
             if (ratio.empty()) continue;
-            is_ahead &= spread(ratio).low > 1;
-            is_behind |= spread(ratio).high < 1;
+            is_ahead &= is_at_least(spread(ratio), 1) == Verdict::Holds;
+            is_behind |= is_at_least(spread(ratio), 1) == Verdict::DoesNotHold;
             ours.push_back(fmt::format("{}: {}", depth.get<std::int64_t>(), to_text(spread(ratio))));
         }
         summary.findings.push_back({"", "the fused pool is faster than recursion at every depth", "",
@@ -328,23 +329,21 @@ class Depth : public Study {
                                                  : Verdict::CannotTell,
                                     ours.empty()            ? "recursion was refused"
                                     : is_ahead || is_behind ? ""
-                                                            : "the spread of the runs includes 1"});
+                                                            : "too few runs, or their spread includes 1"});
     }
 
     static void add_limits(Summary& summary, const Table& rows) {
-        const double deepest = rows.numbers("depth").back();
+        const std::vector<double> depths = rows.numbers("depth");
+        const double deepest = *std::max_element(depths.begin(), depths.end());
 
-        // Memory.
+        // Memory: what pools asked for, which follows from their capacity.
         std::vector<std::string> bytes;
-        bool is_constant = true;
         for (const char* engine : {"shared pool", "pool"}) {
             const Spread pool = spread(rows.where("engine", engine).numbers("pool_bytes"));
-            is_constant &= pool.low == pool.high;
             bytes.push_back(fmt::format("{}: {:.2f} to {:.2f} MB", engine, pool.low * 1e-6, pool.high * 1e-6));
         }
-        summary.findings.push_back({"", "a pool's memory does not grow with depth", "",
-                                    fmt::format("{}, up to depth {}", fmt::join(bytes, "; "), deepest),
-                                    is_constant ? Verdict::Holds : Verdict::DoesNotHold, ""});
+        summary.notes.push_back(
+            fmt::format("Memory that pools asked for, up to depth {}: {}.", deepest, fmt::join(bytes, "; ")));
 
         // Stack.
         const Table refused = rows.where("outcome", kRefused);

@@ -84,9 +84,10 @@ std::vector<std::string> render_arguments(const std::string& scene, std::int64_t
 Case time_case(const Pair& pair, const char* layout, const std::shared_ptr<const StudyScene>& scene,
                const RenderSettings& settings, int repeats) {
     const auto engine = std::make_shared<wavefront::WavefrontEngine>(in_layout(pair, layout));
-    return render_case(
-        fmt::format("time: {}, {}, width {}, {} threads", pair.name, layout, scene->compiled.width, settings.threads),
-        {pair.name, engine}, scene, settings, repeats, cells(*scene, settings, layout, "clock", nullptr, {}));
+    return render_case(fmt::format("time: {}, {}, width {}, {} spp, {} threads", pair.name, layout,
+                                   scene->compiled.width, settings.end_sample, settings.threads),
+                       {pair.name, engine}, scene, settings, repeats,
+                       cells(*scene, settings, layout, "clock", nullptr, {}));
 }
 
 /// Rows of counts have no time: counting disturbs it.
@@ -116,7 +117,8 @@ Case hardware_case(const Pair& pair, const char* layout, const std::shared_ptr<c
             count_row(pair.name, *scene, settings, hash,
                       cells(*scene, settings, layout, "hardware counters", "render", counts.value_or(CacheCounts{})))};
     };
-    return {fmt::format("counters: {}, {}, width {}", pair.name, layout, scene->compiled.width),
+    return {fmt::format("counters: {}, {}, width {}, {} spp", pair.name, layout, scene->compiled.width,
+                        settings.end_sample),
             image_of(*scene, settings), repeats, run};
 }
 

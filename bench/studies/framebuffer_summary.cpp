@@ -10,6 +10,7 @@
 #include "bench/studies/cache_counts.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/statistics.h"
+#include "bench/studies/verdict.h"
 
 namespace raypool::studies {
 
@@ -30,7 +31,10 @@ TextTable times(const Table& clock, std::vector<double>& gains) {
         "Time",
         {"pool", "width", "framebuffer", "threads", "interleaved, s", "planar, s", "planar over interleaved"},
         {}};
-    const Value most = clock.distinct("threads").back();
+    const std::vector<double> counts = clock.numbers("threads");
+    const std::vector<double> widths = clock.numbers("width");
+    const Value most = *std::max_element(counts.begin(), counts.end());
+    const Value largest = *std::max_element(widths.begin(), widths.end());
     for (const Value& engine : clock.distinct("engine"))
         for (const Value& width : clock.distinct("width"))
             for (const Value& threads : clock.distinct("threads")) {
@@ -38,7 +42,8 @@ TextTable times(const Table& clock, std::vector<double>& gains) {
                 const std::vector<double> interleaved = here.where("layout", kInterleaved).numbers("seconds");
                 const std::vector<double> planar = here.where("layout", kPlanar).numbers("seconds");
                 const std::vector<double> gain = ratios(planar, interleaved);
-                if (engine == kSharedPool && threads == most) gains.insert(gains.end(), gain.begin(), gain.end());
+                if (engine == kSharedPool && threads == most && width == largest)
+                    gains.insert(gains.end(), gain.begin(), gain.end());
                 table.rows.push_back({engine.get<std::string>(), width.dump(), size_text(here), threads.dump(),
                                       to_text(spread(interleaved), 3), to_text(spread(planar), 3),
                                       to_text(spread(gain))});
@@ -102,14 +107,17 @@ Finding about_misses(const Table& counted) {
     };
     const double planar = rate_of("render", kPlanar);
     const double interleaved = rate_of("render", kInterleaved);
+    if (planar == 0) {
+        finding.why = "nothing was counted";
+        return finding;
+    }
     finding.ours = fmt::format("{:.2f} % to {:.2f} % of accesses to data, first-level cache, by {}", planar,
                                interleaved, counted.distinct("source").front().get<std::string>());
     if (counted.distinct("part").size() > 1)
         finding.ours += fmt::format("; of those that add to the sums, {:.2f} % to {:.2f} %",
                                     rate_of("accumulate", kPlanar), rate_of("accumulate", kInterleaved));
     finding.verdict = interleaved < kLeastGain * planar ? Verdict::Holds : Verdict::DoesNotHold;
-    if (finding.verdict == Verdict::DoesNotHold)
-        finding.why = "of the whole render the difference is below a twentieth";
+    if (finding.verdict == Verdict::DoesNotHold) finding.why = "of the whole render, not a twentieth fewer";
     return finding;
 }
 
@@ -122,12 +130,14 @@ Finding about_time(const Spread& gain, int threads) {
         fmt::format("planes take {} times as long, the paper's pool, {}", to_text(gain, 3), threads_text(threads)),
         Verdict::CannotTell,
         ""};
-    if (gain.median < kNothing) {
+    if (gain.runs < kLeastRuns) {
+        finding.why = fmt::format("fewer than {} runs", kLeastRuns);
+    } else if (gain.high < kNothing) {
         finding.verdict = Verdict::Holds;
-    } else if (gain.low > 1) {
+    } else if (gain.low > 1 && gain.median >= kNothing) {
         finding.verdict = Verdict::DoesNotHold;
     } else {
-        finding.why = "the spread of the runs includes 1";
+        finding.why = "the runs are too far apart to exclude a gain of 2 %";
     }
     return finding;
 }
@@ -142,8 +152,8 @@ void add_notes(Summary& summary, const Table& counted) {
         summary.notes.push_back(fmt::format(
             "Misses: no hardware counters here, so by cachegrind, which simulates caches (bytes, ways, line: {} and "
             "{}) "
-            "and counts the same every time. `render` is all that the engine does but for putting planes together at "
-            "the end; `accumulate` is what of that adds to the framebuffer.",
+            "and counts the same every time. `render` is the functions of the wavefront engine, but for putting planes "
+            "together at the end; `accumulate` is what of that adds to the framebuffer.",
             kSimulatedD1, kSimulatedLl));
 }
 
@@ -162,8 +172,9 @@ Summary summarise_framebuffer(const Table& data) {
     summary.pictures.push_back(
         {"framebuffer", "Three sums side by side, or three planes",
          "Left: time of a thread for each sample, median with lowest and highest run, taken in turns." + beside +
-             " What to see: the bars of a pair are nearly of one length, so the layout hardly matters. Samples of a "
-             "pixel end close together in time, and most of what a pool reads and writes are records."});
+             " What to see: whether the two bars of a pair differ by more than their whiskers. Most of what a pool "
+             "reads "
+             "and writes are records, not sums."});
     add_notes(summary, counted);
     return summary;
 }

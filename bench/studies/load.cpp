@@ -7,6 +7,7 @@
 
 #include "bench/studies/renders.h"
 #include "bench/studies/replay_ways.h"
+#include "bench/studies/runner.h"
 #include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
 #include "wavefront/settings.h"
@@ -104,22 +105,24 @@ class Load : public Study {
         const Measured counted = measure(engine, scene, settings);
         settings.count_work = false;
         const bool is_timed = settings.threads <= core_count();
-        const RenderReport timed = is_timed ? measure(engine, scene, settings).report : RenderReport();
+        const Measured timed = is_timed ? measure(engine, scene, settings) : counted;
+        if (timed.hash != counted.hash) throw WrongImage(way + ": the image differs when tests are counted");
         std::vector<Row> rows;
         for (std::size_t i = 0; i < counted.report.threads.size(); ++i) {
             const ThreadWork& work = counted.report.threads[i];
-            rows.push_back(sparse_row(columns(), {{"group", group},
-                                                  {"way", way},
-                                                  {"source", "counted"},
-                                                  {"threads", settings.threads},
-                                                  {"thread", i},
-                                                  {"segments", work.segments},
-                                                  {"box_tests", work.box_tests},
-                                                  {"primitive_tests", work.primitive_tests},
-                                                  {"tests", work.box_tests + work.primitive_tests},
-                                                  {"busy_s", is_timed ? Value(timed.threads[i].busy_s) : Value()},
-                                                  {"wait_s", is_timed ? Value(timed.threads[i].wait_s) : Value()},
-                                                  {"hash", counted.hash}}));
+            rows.push_back(
+                sparse_row(columns(), {{"group", group},
+                                       {"way", way},
+                                       {"source", "counted"},
+                                       {"threads", settings.threads},
+                                       {"thread", i},
+                                       {"segments", work.segments},
+                                       {"box_tests", work.box_tests},
+                                       {"primitive_tests", work.primitive_tests},
+                                       {"tests", work.box_tests + work.primitive_tests},
+                                       {"busy_s", is_timed ? Value(timed.report.threads[i].busy_s) : Value()},
+                                       {"wait_s", is_timed ? Value(timed.report.threads[i].wait_s) : Value()},
+                                       {"hash", counted.hash}}));
         }
         return rows;
     }
@@ -219,8 +222,8 @@ Summary Load::summarise(const Table& data, const StudyOptions&) const {
         {"load", fmt::format("Work of each of {} threads", threads),
          "Each bar is a thread's box and primitive tests, each white dot the rays that it traced, both over the mean "
          "(the line at 1). The number is max/mean of tests: 1 is perfect balance, and all threads wait for the tallest "
-         "bar. What to see: the default schedule is the worst and single pixels the best; a pool of equal shares has "
-         "its dots on the line and its bars far from it: equal rays are not equal work."});
+         "bar. What to see: which ways leave tall bars; and, in the last panel, that a pool whose dots are on the line "
+         "may have its bars far from it: equal rays are not equal work."});
     summary.notes.push_back(
         "Static schedules, and every pool, are counted in a real run. Loops that hand out work as threads ask for it "
         "are counted too where there are enough cores, and replayed from the recorded costs of all paths where there "

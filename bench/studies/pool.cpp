@@ -138,7 +138,7 @@ class Pool : public Study {
         settings.depth = static_cast<std::int32_t>(choose(options.depth, options.is_quick, 50, 50));
         settings.seed = options.seed;
         settings.schedule = parse_schedule("dynamic");
-        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 3, 5));
+        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 5, 7));
         const int most = static_cast<int>(choose(options.threads, false, 0, core_count()));
         const std::int64_t paths = scene->compiled.pixel_count() * settings.end_sample;
 

@@ -121,11 +121,11 @@ void add_findings(Summary& summary, const Table& data) {
         const Verdict is_slower = is_faster == Verdict::Holds         ? Verdict::DoesNotHold
                                   : is_faster == Verdict::DoesNotHold ? Verdict::Holds
                                                                       : Verdict::CannotTell;
-        summary.findings.push_back({"Figure 8", fmt::format("the pool is slower than basic recursion: {}", which),
-                                    "slower",
-                                    fmt::format("at its best capacity, {} records, {} times as fast as recursion, {}",
-                                                at.capacity, to_text(at.ratio), threads_text(threads.get<int>())),
-                                    is_slower, why_open(at.ratio, 1)});
+        summary.findings.push_back(
+            {"Figure 8", fmt::format("the pool is slower than recursion (here: lines, dynamic): {}", which), "slower",
+             fmt::format("at its best capacity, {} records, {} times as fast as recursion, {}", at.capacity,
+                         to_text(at.ratio), threads_text(threads.get<int>())),
+             is_slower, why_open(at.ratio, 1)});
     };
     add(kPaperPool, "as the paper has it, a ray at a time");
     add(kWidePool, "the same pool with wide stages and streams");
@@ -136,15 +136,15 @@ void add_pictures(Summary& summary) {
     summary.pictures.push_back(
         {"capacity", "How large a pool must be to beat recursion",
          "Each line is a pool, by its capacity: how many times as fast as recursion, with a band from the lowest to "
-         "the highest run. What to see: where a line rises above 1, the pool wins. The paper's pool, a ray at a time, "
-         "stays below; with wide stages even a shared pool (red, orange) wins once it is large; pools of the threads' "
-         "own (blue) win early, until they outgrow the caches."});
+         "the highest run. What to see: where a line rises above 1, the pool wins. Compare the paper's pool, a ray at "
+         "a "
+         "time (black), with the same pool made wide (red, orange) and with pools of the threads' own (blue)."});
     summary.pictures.push_back(
         {"rounds", "How full the pool is, round by round",
          "Left: records in a shared pool, from round to round, while the same paths are rendered. Right: the pool that "
          "drains, its fillings added up: what is left of its records, and how full the registers are that treat them. "
-         "What to see: a pool that drains works on next to nothing for most of its rounds; one that is refilled at "
-         "once stays full, and needs fewer."});
+         "What to see: for how many of its rounds a pool that drains works on next to nothing, and that one that is "
+         "refilled at once stays full and needs fewer."});
 }
 
 }  // namespace

@@ -316,7 +316,10 @@ void add_pool_load(Summary& summary, const Table& data, int threads) {
          fmt::format("max/mean of tests at most {}", kReach),
          fmt::format("{:.3f} by \"{}\"; {:.3f} by \"{}\"", least, best,
                      pools.where("way", kDefaultPool).numbers("max_over_mean").at(0), kDefaultPool),
-         least <= kReach ? Verdict::Holds : Verdict::DoesNotHold, ""});
+         threads < 64      ? Verdict::CannotTell
+         : least <= kReach ? Verdict::Holds
+                           : Verdict::DoesNotHold,
+         threads < 64 ? "takes a replay of 64 threads" : ""});
 }
 
 TextTable efficiency_table(const Table& replayed, const char* column, std::string title) {
@@ -364,10 +367,9 @@ Summary ReplayStudy::summarise(const Table& data, const StudyOptions&) const {
         {"replay", "How far each schedule would scale, if threads were all that it takes",
          "Each line is one way to share out the same recorded work; thin dashed lines add what fetching chunks and "
          "waiting at "
-         "barriers cost here, the dotted line is the best that these grains allow. What to see: the default schedule "
-         "of lines wastes a quarter with four threads already; "
-         "lines run out at a hundred threads, pixels at a thousand; a shared pool in large batches stops scaling "
-         "first."});
+         "barriers cost here, the dotted line is the best that these grains allow. What to see: at how many threads "
+         "each way leaves the top. It is where the grain runs out: there are as many lines as the image is high, as "
+         "many batches as fit into the pool."});
     summary.pictures.push_back(
         {"reality", "Replay against reality",
          fmt::format("Filled: predicted by replay, with a band of {:.0f} points either side. Open, with whiskers from "
@@ -389,9 +391,9 @@ Summary ReplayStudy::summarise(const Table& data, const StudyOptions&) const {
         "lie around it with a standard deviation of {:.1f} % of their mean. For pools it is scaled to their own time.",
         100 * model.numbers("fit_error").at(0)));
     summary.notes.push_back(
-        "Pools test rays in streams and packets, so a segment's tests by a single ray stand in for theirs; batches of "
-        "a "
-        "shared pool are cut from the rays still alive, in order.");
+        "Pools test rays in streams and packets, so a segment's tests by a single ray stand in for theirs. A path of a "
+        "shared pool stays in its batch; equal shares are cut anew from the rays still alive. Only the loops are held "
+        "against real runs here: what is said of pools is a prediction.");
     summary.notes.push_back(
         "A replay knows balance, chunk fetches and barriers, and nothing of memory, caches or sockets: it bounds "
         "efficiency from above. Beyond the cores of this machine a chunk fetch costs what it costs with all of them, "

@@ -195,18 +195,22 @@ double makespan_bound(std::span<const double> items, int threads) {
     return std::max(total / threads, dearest);
 }
 
-std::vector<std::vector<double>> drained_rounds(const SegmentCosts& segments, std::size_t capacity, std::size_t batch) {
+std::vector<std::vector<double>> drained_rounds(const SegmentCosts& segments, std::size_t capacity, std::size_t batch,
+                                                Packing packing) {
     std::vector<std::vector<double>> rounds;
     std::vector<std::size_t> alive;
     for (std::size_t filled = 0; filled < segments.path_count(); filled += capacity) {
         alive.resize(std::min(capacity, segments.path_count() - filled));
         std::iota(alive.begin(), alive.end(), filled);
+        const std::size_t size = alive.size();
+        rounds.emplace_back((size + batch - 1) / batch);
         for (std::uint32_t depth = 0; !alive.empty(); ++depth) {
-            std::vector<double> batches((alive.size() + batch - 1) / batch);
+            const std::size_t places = packing == Packing::InPlace ? size : alive.size();
+            std::vector<double> batches((places + batch - 1) / batch);
             std::size_t survivors = 0;
             for (std::size_t i = 0; i < alive.size(); ++i) {
                 const std::uint32_t segment = segments.first[alive[i]] + depth;
-                batches[i / batch] += segments.cost[segment];
+                batches[(packing == Packing::InPlace ? alive[i] - filled : i) / batch] += segments.cost[segment];
                 if (segment + 1 < segments.first[alive[i] + 1]) alive[survivors++] = alive[i];
             }
             alive.resize(survivors);

@@ -57,9 +57,15 @@ struct SegmentCosts {
     [[nodiscard]] std::size_t path_count() const { return first.size() - 1; }
 };
 
+/// Where a path that is alive finds its place in the next round: in the batch that it was in, as the engine's pool has
+/// it unless it is told otherwise, or behind the path before it.
+enum class Packing : std::uint8_t { InPlace, Dense };
+
 /// The rounds of a shared pool that is filled with `capacity` paths in order, and drained: in each, the next segment of
-/// every path that is alive, in order, summed up in batches of `batch`.
-std::vector<std::vector<double>> drained_rounds(const SegmentCosts& segments, std::size_t capacity, std::size_t batch);
+/// every path that is alive, in order, summed up in batches of `batch`. A round without work, in which camera rays are
+/// made, comes before those of each filling.
+std::vector<std::vector<double>> drained_rounds(const SegmentCosts& segments, std::size_t capacity, std::size_t batch,
+                                                Packing packing);
 
 /// Rounds with a barrier after each. Threads come to a round in another order each time.
 Replayed replay_rounds(std::span<const std::vector<double>> rounds, const ReplaySchedule& schedule, int threads,

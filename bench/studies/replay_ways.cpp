@@ -28,8 +28,8 @@ PreparedWay prepare(const ReplayWay& way, const PathCosts& costs, const CostMode
         }
         case ReplayWay::Kind::Drained: {
             const std::vector<float> segments = costs.segment_costs(model);
-            const auto rounds = std::make_shared<const std::vector<std::vector<double>>>(
-                drained_rounds({costs.first, segments}, capacity, way.batch));
+            const auto rounds = std::make_shared<const std::vector<std::vector<double>>>(drained_rounds(
+                {costs.first, segments}, capacity, way.batch, way.batch == 1 ? Packing::Dense : Packing::InPlace));
             return {
                 [=](int threads, const ReplayCosts& extra) { return replay_rounds(*rounds, schedule, threads, extra); },
                 [=](int threads) { return makespan_bound(*rounds, threads); }};

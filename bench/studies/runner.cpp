@@ -9,6 +9,7 @@
 #include <ctime>
 #include <fstream>
 #include <map>
+#include <numeric>
 #include <set>
 #include <span>
 #include <utility>
@@ -87,7 +88,8 @@ class Data {
   public:
     Data(fs::path folder, std::vector<Column> columns, const std::vector<Case>& cases)
         : path_(std::move(folder) / "data.csv"), table_(std::move(columns)) {
-        for (const Case& c : cases) image_[c.id] = c.image;
+        for (const Case& c : cases)
+            RAYPOOL_CHECK(image_.try_emplace(c.id, c.image).second, "the cases of a study have ids of their own");
     }
 
     /// Takes over what an interrupted run left behind.
@@ -187,21 +189,25 @@ bool run_study(const Study& study, const StudyOptions& options, const fs::path& 
             if (found.contains(key)) run[key] = found[key];
         data.load();
     }
+    data.open();  // before run.json says that what is in it belongs to this run
+    if (control.is_fresh) fs::remove(folder / "summary.md", error);
     const bool was_complete = data.run_count() == run_count(study, options);
     if (!was_complete) {
         run["started"].push_back(now());
         write_text(folder / "run.json", run.dump(2) + "\n");
     }
-    data.open();
     if (control.progress != nullptr) control.progress->paths = data.run_count();
 
-    // Repeats outermost; each begins one case further on, so that no case always follows the same other.
+    // Repeats outermost; each goes through the cases by another stride, so that no case always follows the same other.
     int repeats = 0;
     for (const Case& c : cases) repeats = std::max(repeats, c.repeats);
     const CpuTime before = cpu_time();
     for (int repeat = 0; repeat < repeats; ++repeat) {
+        const auto turn = static_cast<std::size_t>(repeat);
+        std::size_t stride = turn + 1;
+        while (std::gcd(stride, cases.size()) != 1) ++stride;
         for (std::size_t i = 0; i < cases.size(); ++i) {
-            const Case& c = cases[(i + static_cast<std::size_t>(repeat)) % cases.size()];
+            const Case& c = cases[(turn + i * stride) % cases.size()];
             if (repeat >= c.repeats || data.has(c.id, repeat)) continue;
             if (control.is_stopped != nullptr && *control.is_stopped) return false;
             data.add(c, repeat, c.run());

@@ -16,12 +16,13 @@ namespace raypool::studies {
 /// Of at least one value.
 struct Spread {
     double median, low, high;
+    std::size_t runs = 1;
 };
 
 inline Spread spread(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     const std::size_t n = values.size();
-    return {0.5 * (values[(n - 1) / 2] + values[n / 2]), values.front(), values.back()};
+    return {0.5 * (values[(n - 1) / 2] + values[n / 2]), values.front(), values.back(), n};
 }
 
 inline double median(std::vector<double> values) {

@@ -29,12 +29,13 @@ TEST(Crossover, NamesTheLargerCapacitiesThatLoseAgain) {
     EXPECT_EQ(to_text(found), "64, but not 256, 4096");
 }
 
-TEST(RatioVerdict, IsOpenOnlyWhereRunsAreOnBothSides) {
-    EXPECT_EQ(is_at_least({4.2, 4.0, 4.4}, 4), Verdict::Holds);
-    EXPECT_EQ(is_at_least({3.8, 3.6, 3.9}, 4), Verdict::DoesNotHold);
-    EXPECT_EQ(is_at_least({4.1, 3.9, 4.2}, 4), Verdict::CannotTell);
-    EXPECT_EQ(why_open({4.1, 3.9, 4.2}, 4), "the spread of the runs includes 4");
-    EXPECT_EQ(why_open({4.2, 4.0, 4.4}, 4), "");
+TEST(RatioVerdict, IsOpenWhereRunsAreFewOrOnBothSides) {
+    EXPECT_EQ(is_at_least({4.2, 4.0, 4.4, 5}, 4), Verdict::Holds);
+    EXPECT_EQ(is_at_least({3.8, 3.6, 3.9, 5}, 4), Verdict::DoesNotHold);
+    EXPECT_EQ(is_at_least({4.1, 3.9, 4.2, 5}, 4), Verdict::CannotTell);
+    EXPECT_EQ(is_at_least({4.2, 4.0, 4.4, 4}, 4), Verdict::CannotTell);
+    EXPECT_EQ(why_open({4.1, 3.9, 4.2, 5}, 4), "the spread of the runs includes 4");
+    EXPECT_EQ(why_open({4.2, 4.0, 4.4, 5}, 4), "");
 }
 
 }  // namespace

@@ -156,26 +156,31 @@ TEST(DrainedRounds, HoldTheNextSegmentOfEveryPathThatIsAlive) {
     // Two paths fill the pool, then the third.
     const std::vector<std::uint32_t> first{0, 1, 4, 6};
     const std::vector<float> cost{1, 10, 20, 30, 100, 200};
-    const auto rounds = drained_rounds({first, cost}, 2, 1);
-    const std::vector<std::vector<double>> expected{{1, 10}, {20}, {30}, {100}, {200}};
-    EXPECT_EQ(rounds, expected);
-    EXPECT_EQ(drained_rounds({first, cost}, 3, 2), (std::vector<std::vector<double>>{{11, 100}, {220}, {30}}));
+    // Before each filling, a round that makes camera rays.
+    using Rounds = std::vector<std::vector<double>>;
+    EXPECT_EQ(drained_rounds({first, cost}, 2, 1, Packing::Dense),
+              (Rounds{{0, 0}, {1, 10}, {20}, {30}, {0}, {100}, {200}}));
+    EXPECT_EQ(drained_rounds({first, cost}, 3, 2, Packing::Dense), (Rounds{{0, 0}, {11, 100}, {220}, {30}}));
+    EXPECT_EQ(drained_rounds({first, cost}, 3, 2, Packing::InPlace), (Rounds{{0, 0}, {11, 100}, {20, 200}, {30, 0}}));
 }
 
 TEST(DrainedRounds, KeepAllWorkAtAnyCapacityAndBatch) {
     const Paths paths(1000);
     for (const std::size_t capacity : {1UL, 7UL, 64UL, 5000UL}) {
         for (const std::size_t batch : {1UL, 16UL, 5000UL}) {
-            double total = 0;
-            for (const auto& round : drained_rounds(paths.segments(), capacity, batch)) total += sum(round);
-            EXPECT_EQ(total, paths.total());
+            for (const Packing packing : {Packing::InPlace, Packing::Dense}) {
+                double total = 0;
+                for (const auto& round : drained_rounds(paths.segments(), capacity, batch, packing))
+                    total += sum(round);
+                EXPECT_EQ(total, paths.total());
+            }
         }
     }
 }
 
 TEST(ReplayRounds, PayABarrierForEachAndNeverBeatTheirBound) {
     const Paths paths(1000);
-    const auto rounds = drained_rounds(paths.segments(), 200, 8);
+    const auto rounds = drained_rounds(paths.segments(), 200, 8, Packing::InPlace);
     for (const ReplaySchedule& schedule : {ReplaySchedule{Kind::Static, 0}, ReplaySchedule{Kind::Dynamic, 1}}) {
         for (const int threads : kThreads) {
             const Replayed free = replay_rounds(rounds, schedule, threads);
