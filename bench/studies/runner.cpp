@@ -184,10 +184,13 @@ bool run_study(const Study& study, const StudyOptions& options, const fs::path& 
     Data data(folder, columns, cases);
     if (!control.is_fresh && fs::exists(folder / "run.json")) {
         const json found = read_run(folder);
+        data.load();
+        // A complete run is only summarised anew, by whatever build: its figures keep the origin that they have.
+        if (data.run_count() == run_count(study, options) && found.contains("environment"))
+            run["environment"] = found["environment"];
         check_same_run(found, run, folder);
         for (const char* key : {"started", "finished", "stolen"})
             if (found.contains(key)) run[key] = found[key];
-        data.load();
     }
     data.open();  // before run.json says that what is in it belongs to this run
     if (control.is_fresh) fs::remove(folder / "summary.md", error);

@@ -2,7 +2,8 @@
 ///
 /// A study's folder holds data.csv (a row or more for each repeat of each case, appended as soon as it is known),
 /// run.json (what was asked, of which build, on which machine, and what came out), summary.md and the pictures. A run
-/// that was interrupted goes on where it stopped, provided that study, options, build and machine are the same.
+/// that was interrupted goes on where it stopped, provided that study, options, build and machine are the same. One that
+/// is complete is summarised anew, also by another build, and keeps the build and machine that its figures are of.
 #pragma once
 
 #include <atomic>

@@ -268,12 +268,10 @@ Summary Scaling::summarise(const Table& data, const StudyOptions&) const {
                                     "15.2 times from width 400 to 1600, 16 times the pixels",
                                     fmt::format("{} times from width {} to {}, {:.1f} times the pixels", to_text(times),
                                                 widths.front().dump(), widths.back().dump(), pixels),
-                                    relative > 0.85 && relative < 1.15 ? Verdict::Holds
-                                    : times.high / times.low > 1.3     ? Verdict::CannotTell
-                                                                       : Verdict::DoesNotHold,
-                                    relative > 0.85 && relative < 1.15 ? ""
-                                    : times.high / times.low > 1.3     ? "the runs are too far apart"
-                                                                       : ""});
+                                    times.high / times.low > 1.3         ? Verdict::CannotTell
+                                    : relative > 0.85 && relative < 1.15 ? Verdict::Holds
+                                                                         : Verdict::DoesNotHold,
+                                    times.high / times.low > 1.3 ? "the runs are too far apart" : ""});
     }
     summary.findings.push_back({"CPU against GPU", "CUDA is two to three times as fast as 16 threads",
                                 "23.9/12.1, 46.2/19.2, 91.2/36.2, 204.9/73.9, 362.9/127.7 s (16 threads/CUDA) for "

@@ -113,6 +113,33 @@ TEST(StudyRunner, OfACompleteRunMeasuresNothingAgain) {
     EXPECT_EQ(file_text(folder / "run.json"), before);
 }
 
+/// Makes the folder's run one of another build.
+void change_commit(const ScratchFolder& folder) {
+    nlohmann::json run = nlohmann::json::parse(file_text(folder / "run.json"));
+    run["environment"]["commit"] = "another";
+    set_file_text(folder / "run.json", run.dump(2));
+}
+
+TEST(StudyRunner, SummarisesACompleteRunOfAnotherBuildAndKeepsItsOrigin) {
+    const ScratchFolder folder;
+    EXPECT_TRUE(run_study(Fake(), {}, folder.path(), {}));
+    change_commit(folder);
+    const Fake study;
+    EXPECT_TRUE(run_study(study, {}, folder.path(), {}));
+    EXPECT_TRUE(study.order.empty());
+    EXPECT_THAT(file_text(folder / "summary.md"), testing::HasSubstr("commit another"));
+}
+
+TEST(StudyRunner, DoesNotGoOnWithTheRunOfAnotherBuild) {
+    const ScratchFolder folder;
+    Fake first;
+    first.stop_after = 3;
+    EXPECT_FALSE(run_study(first, {}, folder.path(), {false, &first.is_stopped, nullptr}));
+    change_commit(folder);
+    EXPECT_THROW(run_study(Fake(), {}, folder.path(), {}), InputError);
+    EXPECT_EQ(data_of(folder).rows().size(), 4U);  // and what there was is untouched
+}
+
 TEST(StudyRunner, RefusesToMixTwoRunsAndSaysWhatDiffers) {
     const ScratchFolder folder;
     EXPECT_TRUE(run_study(Fake(), {}, folder.path(), {}));
