@@ -9,6 +9,7 @@ import sys
 from common import COLOURS, HATCHES, plt
 
 STAGES = ["generate", "intersect", "shade", "accumulate", "append", "sort", "wait"]
+STAGE_COLOURS = [*COLOURS[:6], "#BBBBBB"]
 
 
 def main():
@@ -23,7 +24,7 @@ def main():
         key = next(iter(counter["args"]))
         records.step([e["ts"] / 1000 for e in same], [e["args"][key] / 1000 for e in same], where="post", color="black")
         records.set_ylabel("thousand\nrecords")
-    for stage, colour, hatch in zip(STAGES, COLOURS, HATCHES):
+    for stage, colour, hatch in zip(STAGES, STAGE_COLOURS, [*HATCHES[:6], ""]):
         of_stage = [e for e in spans if e["name"] == stage]
         for i, thread in enumerate(threads):
             bars = [(e["ts"] / 1000, e["dur"] / 1000) for e in of_stage if e["tid"] == thread]
