@@ -110,10 +110,10 @@ class ReplayStudy : public Study {
     [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
         const auto scene = study_scene(options.scene, choose(options.width, false, 0, 400));
         RenderSettings settings;
-        settings.end_sample = choose(options.spp, options.is_quick, 4, 16);
+        settings.end_sample = choose(options.spp, options.is_quick, 4, 8);
         settings.depth = static_cast<std::int32_t>(choose(options.depth, false, 0, 50));
         settings.seed = options.seed;
-        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 5, 15));
+        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 5, 11));
         const int most = static_cast<int>(choose(options.threads, false, 0, kMostThreads));
         const int real = std::min({2, core_count(), most});
         const double loop_s = options.is_quick ? 0.02 : 0.05;
@@ -175,7 +175,7 @@ class ReplayStudy : public Study {
                 const Replayed timed = time.replay(threads, {});
                 filled[i] =
                     sparse_row(all, {{"kind", "replayed"},
-                                     {"group", group},
+                                     {"group", grouped.group},
                                      {"way", way.name},
                                      {"threads", threads},
                                      {"efficiency_tests", counted.efficiency()},

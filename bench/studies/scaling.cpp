@@ -87,7 +87,7 @@ class Scaling : public Study {
         settings.end_sample = choose(options.spp, options.is_quick, 2, 2);
         settings.depth = static_cast<std::int32_t>(choose(options.depth, false, 0, 50));
         settings.seed = options.seed;
-        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 3, 7));
+        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 3, 5));
         const int most = static_cast<int>(choose(options.threads, false, 0, kMostThreads));
 
         std::vector<Case> cases;
@@ -130,8 +130,10 @@ class Scaling : public Study {
         const OpenMpCosts openmp = measure_openmp_costs(most);
         std::vector<Row> rows;
         for (const Way& way : kWays) {
+            const bool is_pool = way.engine != Way::Engine::Recursive;
             const PreparedWay prepared =
-                prepare(replay_of(way), costs, scaled_to(*engine_of(way).engine, scene, settings, costs, model, 2));
+                prepare(replay_of(way), costs,
+                        is_pool ? scaled_to(*engine_of(way).engine, scene, settings, costs, model, 2) : model);
             const double one = prepared.replay(1, openmp.at(1)).makespan;
             for (const int threads : thread_counts(most))
                 rows.push_back(sparse_row(
