@@ -231,7 +231,8 @@ Summary Load::summarise(const Table& data, const StudyOptions&) const {
     summary.notes.push_back(
         "Pools: lines, or batches of the shared pools, in turn (static,1) where nothing else is said. What a thread of "
         "a "
-        "shared pool traces depends on who fetches camera rays first, so its counts differ a little from run to run.");
+        "shared pool traces depends on who fetches camera rays first, so its counts differ a little from run to run; "
+        "and sums over rounds do not show what threads wait for each other within a round: the replay study does.");
     return summary;
 }
 

@@ -1,6 +1,8 @@
 // Compiled with -fno-optimize-sibling-calls: the tracer that is timed here is the recursive engine's.
 #include "bench/studies/path_costs.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -55,15 +57,15 @@ LineLog record_line(const CompiledScene<float>& scene, const RenderSettings& set
     return line;
 }
 
-/// Seconds of each line.
+/// Processor time of every `step`th line.
 template <SceneNeeds needs>
-std::vector<double> time_lines(const CompiledScene<float>& scene, const RenderSettings& settings) {
+std::vector<double> time_lines(const CompiledScene<float>& scene, const RenderSettings& settings, std::int64_t step) {
     const FlushDenormals flush;
     recursive::Tracer<needs, float, NoWorkCount, Splitting::Off> tracer(
         scene, random_seed(settings.seed), settings.depth, 0,
         FixedPoint::make(settings.end_sample, scene.max_radiance));
     std::vector<double> seconds;
-    for (std::int64_t y = 0; y < scene.height; ++y) {
+    for (std::int64_t y = 0; y < scene.height; y += step) {
         const double start = processor_seconds();
         for (std::int64_t x = 0; x < scene.width; ++x) {
             FixedRgb sum{};
@@ -73,6 +75,10 @@ std::vector<double> time_lines(const CompiledScene<float>& scene, const RenderSe
         seconds.push_back(processor_seconds() - start);
     }
     return seconds;
+}
+std::vector<double> time_lines(const StudyScene& scene, const RenderSettings& settings, std::int64_t step) {
+    return dispatch_needs(scene.compiled.needs,
+                          [&]<SceneNeeds needs>() { return time_lines<needs>(scene.compiled, settings, step); });
 }
 
 /// Least squares through the origin in two variables. Where lines are too few or too noisy for two, in one.
@@ -169,8 +175,7 @@ ItemOrder in_order(const PathCosts& costs, const Grain& grain, const CostModel& 
 CostFit fit_costs(const StudyScene& scene, const RenderSettings& settings, const PathCosts& costs, int repeats) {
     std::vector<double> seconds(static_cast<std::size_t>(scene.compiled.height), std::numeric_limits<double>::max());
     for (int i = 0; i < repeats; ++i) {
-        const std::vector<double> run = dispatch_needs(
-            scene.compiled.needs, [&]<SceneNeeds needs>() { return time_lines<needs>(scene.compiled, settings); });
+        const std::vector<double> run = time_lines(scene, settings, 1);
         for (std::size_t y = 0; y < run.size(); ++y) seconds[y] = std::min(seconds[y], run[y]);
     }
 
@@ -184,6 +189,16 @@ CostFit fit_costs(const StudyScene& scene, const RenderSettings& settings, const
     const auto count = static_cast<double>(lines.size());
     if (result.seconds > 0) result.error = std::sqrt(squares / count) / (result.seconds / count);
     return result;
+}
+
+std::vector<double> equal_work_seconds(const StudyScene& scene, const RenderSettings& settings, int threads) {
+    std::vector<double> seconds(static_cast<std::size_t>(threads));
+#pragma omp parallel num_threads(threads)
+    {
+        const std::vector<double> lines = time_lines(scene, settings, 2);
+        seconds[static_cast<std::size_t>(omp_get_thread_num())] = std::accumulate(lines.begin(), lines.end(), 0.0);
+    }
+    return seconds;
 }
 
 CostModel scaled_to(const Engine& engine, const StudyScene& scene, RenderSettings settings, const PathCosts& costs,

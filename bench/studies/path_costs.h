@@ -83,6 +83,10 @@ struct CostFit {
 /// `repeats` runs of each line: other work on the machine can only add to it.
 CostFit fit_costs(const StudyScene& scene, const RenderSettings& settings, const PathCosts& costs, int repeats);
 
+/// Processor time of each of `threads` threads that all trace the same lines, every second one of the image, at once: a
+/// perfectly balanced run. Cores of one machine may differ in speed, those of a virtual one most of all.
+std::vector<double> equal_work_seconds(const StudyScene& scene, const RenderSettings& settings, int threads);
+
 /// The model in the same proportions, so that the whole image takes as long as the engine does on one thread: least
 /// processor time of the repeats.
 CostModel scaled_to(const Engine& engine, const StudyScene& scene, RenderSettings settings, const PathCosts& costs,

@@ -103,7 +103,7 @@ std::vector<std::int32_t> order_of(std::span<const double> items, const ReplaySc
 }
 
 Replayed replay_from(std::span<const double> items, const ReplaySchedule& schedule, int threads,
-                     const ReplayCosts& costs, int first) {
+                     const ReplayCosts& costs, int first, std::span<const double> speeds = {}) {
     const std::vector<std::int32_t> order = order_of(items, schedule);
     Dispenser dispenser(static_cast<std::int64_t>(items.size()), schedule, threads);
     Replayed result{std::vector<double>(static_cast<std::size_t>(threads)), std::vector<std::int32_t>(items.size()), 0};
@@ -118,7 +118,8 @@ Replayed replay_from(std::span<const double> items, const ReplaySchedule& schedu
             result.owner[item] = thread;
         }
         result.work[static_cast<std::size_t>(thread)] += work;
-        const double end = start + work + (dispenser.is_fetching() ? costs.fetch : 0);
+        const double speed = speeds.empty() ? 1 : speeds[static_cast<std::size_t>(thread)];
+        const double end = start + work / speed + (dispenser.is_fetching() ? costs.fetch : 0);
         result.makespan = std::max(result.makespan, end);
         clocks.put(end, rank, thread);
     }
@@ -185,8 +186,9 @@ double Replayed::efficiency() const {
     return makespan == 0 ? 1 : total() / (makespan * static_cast<double>(work.size()));
 }
 
-Replayed replay(std::span<const double> items, const ReplaySchedule& schedule, int threads, const ReplayCosts& costs) {
-    return replay_from(items, schedule, threads, costs, 0);
+Replayed replay(std::span<const double> items, const ReplaySchedule& schedule, int threads, const ReplayCosts& costs,
+                std::span<const double> speeds) {
+    return replay_from(items, schedule, threads, costs, 0, speeds);
 }
 
 double makespan_bound(std::span<const double> items, int threads) {

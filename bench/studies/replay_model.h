@@ -1,8 +1,9 @@
 /// What a schedule makes of work whose costs are known, for any number of threads: balance without a machine.
 ///
 /// Costs may have any unit, and all results have it. Iterations are handed out as OpenMP's runtime does (GNU's for
-/// guided, where runtimes differ), threads run at one speed, and nothing is known of memory: a replay is what the
-/// balance of work, the fetching of chunks and the barriers allow, and no more. Pure functions.
+/// guided, where runtimes differ), threads run at one speed unless it is said otherwise, and nothing is known of
+/// memory: a replay is what the balance of work, the fetching of chunks and the barriers allow, and no more. Pure
+/// functions.
 #pragma once
 
 #include <cstdint>
@@ -42,9 +43,10 @@ struct Replayed {
     [[nodiscard]] double efficiency() const;
 };
 
-/// A loop over items. There is at least one thread.
+/// A loop over items. There is at least one thread. `speeds` are of the threads: an item takes a thread its cost over
+/// the speed; none means 1 for all.
 Replayed replay(std::span<const double> items, const ReplaySchedule& schedule, int threads,
-                const ReplayCosts& costs = {});
+                const ReplayCosts& costs = {}, std::span<const double> speeds = {});
 
 /// The shortest time that any schedule can reach: an equal share, or the dearest item.
 double makespan_bound(std::span<const double> items, int threads);

@@ -38,31 +38,31 @@ def reality(run, rows):
     real = where(rows, kind="real")
     most = max(distinct(real, "threads"))
     ways = distinct(real, "way")
-    figure, axis = plt.subplots(figsize=(9.5, 5.6))
+    figure, axes = plt.subplots(1, 2, figsize=(12, 5.2), sharey=True)
     for place, way in enumerate(ways):
         replayed = {row["threads"]: row["efficiency_costs"] for row in where(rows, kind="replayed", way=way)}
-        predicted = 100 * replayed[most] / replayed[1]
-        runs = {n: {row["repeat"]: row for row in where(real, way=way, threads=n)} for n in (1, most)}
-        measured = []
-        for repeat, one in runs[1].items():
-            more = runs[most][repeat]
-            machine = one["loop_seconds"] / more["loop_seconds"]
-            measured.append(100 * one["seconds"] / more["seconds"] / most / machine)
-        balance = [100 * row["processor_balance"] for row in runs[most].values()]
-        axis.barh(place, 6, left=predicted - 3, height=0.8, color="#D9D9D9", label="within 3 points" if place == 0 else None)
-        axis.plot(predicted, place, marker="D", color=COLOURS[0], linestyle="none", markersize=7,
-                  label="replayed" if place == 0 else None)
-        for values, shift, colour, marker, name in ((measured, -0.22, COLOURS[3], "o", "by the clock"),
-                                                    (balance, 0.22, "black", "s", "by processor time")):
-            middle = median(values)
-            axis.errorbar(middle, place + shift, xerr=[[middle - min(values)], [max(values) - middle]], color=colour,
-                          marker=marker, markerfacecolor="white", markersize=6, capsize=2.5, elinewidth=1, linestyle="none",
-                          label=name if place == 0 else None)
-    axis.set_yticks(range(len(ways)), ways)
-    axis.invert_yaxis()
-    axis.grid(axis="y", visible=False)
-    axis.set_xlabel(f"efficiency with {most:.0f} threads, %")
-    axis.legend(loc="upper left", bbox_to_anchor=(1, 1))
+        one = {row["repeat"]: row["seconds"] for row in where(real, way=way, threads=1)}
+        shared = where(real, way=way, threads=most)
+        clock = [100 * one[row["repeat"]] / row["seconds"] / most for row in shared]
+        balance = [100 * row["processor_balance"] for row in shared]
+        axes[0].plot(100 * replayed[most] / replayed[1], place, marker="d", color="#888888", linestyle="none", markersize=5,
+                     label="replayed, equal speeds")
+        for axis, measured, column in ((axes[0], clock, "predicted"), (axes[1], balance, "predicted_balance")):
+            predicted = 100 * median(row[column] for row in shared)
+            middle = median(measured)
+            axis.barh(place, 6, left=predicted - 3, height=0.75, color="#D9D9D9", label="within 3 points")
+            axis.plot(predicted, place - 0.15, marker="D", color=COLOURS[0], linestyle="none", markersize=6.5,
+                      label="replayed, their speeds")
+            axis.errorbar(middle, place + 0.18, xerr=[[middle - min(measured)], [max(measured) - middle]], color=COLOURS[3],
+                          marker="o", markerfacecolor="white", markersize=6.5, capsize=2.5, elinewidth=1, linestyle="none",
+                          label="measured")
+    for axis, what in zip(axes, ("speedup / threads, by the clock, %", "mean / largest processor time, %")):
+        axis.set_xlabel(f"{what}, {most:.0f} threads")
+        axis.grid(axis="y", visible=False)
+    axes[0].set_yticks(range(len(ways)), ways)
+    axes[0].invert_yaxis()
+    handles = dict(zip(*reversed(axes[0].get_legend_handles_labels())))
+    axes[1].legend(handles.values(), handles.keys(), loc="upper left", bbox_to_anchor=(1, 1), fontsize=9)
     return figure
 
 

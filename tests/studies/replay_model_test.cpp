@@ -145,6 +145,15 @@ TEST(Replay, ChargesAFetchForEachChunkToWhoFetchesIt) {
     EXPECT_EQ(replay(items, {Kind::Dynamic, 3}, 2, {.fetch = 0.5}).total(), 12);
 }
 
+TEST(Replay, LetsASlowThreadTakeLessWhereItMayAndLongerWhereItMayNot) {
+    const std::vector<double> items(300, 1.0);
+    const double speeds[] = {1, 0.5};
+    EXPECT_EQ(replay(items, {Kind::Static, 0}, 2, {}, speeds).makespan, 300);
+    const Replayed dynamic = replay(items, {Kind::Dynamic, 1}, 2, {}, speeds);
+    EXPECT_NEAR(dynamic.work[0], 200, 1);
+    EXPECT_NEAR(dynamic.makespan, 200, 2);
+}
+
 TEST(Replay, OfNothingTakesNoTime) {
     for (const ReplaySchedule& schedule : kSchedules) {
         EXPECT_EQ(replay({}, schedule, 3).makespan, 0);
