@@ -138,7 +138,7 @@ class ReplayStudy : public Study {
     [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
         const auto scene = study_scene(options.scene, choose(options.width, false, 0, 400));
         RenderSettings settings;
-        settings.end_sample = choose(options.spp, options.is_quick, 4, 8);
+        settings.end_sample = choose(options.spp, options.is_quick, 4, 16);
         settings.depth = static_cast<std::int32_t>(choose(options.depth, false, 0, 50));
         settings.seed = options.seed;
         const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 5, 11));
@@ -187,8 +187,7 @@ class ReplayStudy : public Study {
                                             {"fetch_ns", 1e9 * openmp.fetch_s[i]},
                                             {"barrier_ns", 1e9 * openmp.barrier_s[i]}}));
 
-        for (const GroupedWay& grouped : all_ways()) {
-            const auto& group = grouped.group;  // no structured binding: clang 14 has none in parallel regions
+        for (const GroupedWay& grouped : all_ways()) {  // no structured binding: clang 14 has none in parallel regions
             const ReplayWay& way = grouped.way;
             const PreparedWay tests = prepare(way, costs, kTests);
             const PreparedWay time = prepare(way, costs,
