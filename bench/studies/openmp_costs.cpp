@@ -24,6 +24,11 @@ std::uint64_t compute(std::int64_t steps) {
 
 volatile std::uint64_t sink;
 
+/// Has the compiler believe that somebody needs the value.
+void keep(std::uint64_t value) {
+    asm volatile("" : : "r"(value));
+}
+
 /// Short batches, so that a thread which is put to sleep spoils one of them.
 template <class Function>
 double median_of_batches(Function function) {
@@ -36,18 +41,23 @@ double median_of_batches(Function function) {
 }  // namespace
 
 double chunk_fetch_seconds(int threads) {
-    constexpr std::int64_t kChunks = 20'000;
-    return median_of_batches([=] {
-        double seconds = 0;
-#pragma omp parallel num_threads(threads) reduction(+ : seconds)
+    constexpr std::int64_t kChunks = 5'000;
+    constexpr std::int64_t kSteps = 1'000;  // a microsecond or two: the counter has gone to another core meanwhile
+    const double seconds = median_of_batches([=] {
+        double more = 0;
+#pragma omp parallel num_threads(threads) reduction(+ : more)
         {
             const double start = processor_seconds();
 #pragma omp for schedule(dynamic, 1) nowait
-            for (std::int64_t i = 0; i < kChunks; ++i) asm volatile("" ::: "memory");
-            seconds = processor_seconds() - start;
+            for (std::int64_t i = 0; i < kChunks; ++i) keep(compute(kSteps));
+            const double middle = processor_seconds();
+#pragma omp for schedule(static, 1) nowait
+            for (std::int64_t i = 0; i < kChunks; ++i) keep(compute(kSteps));
+            more = middle - start - (processor_seconds() - middle);
         }
-        return seconds / static_cast<double>(kChunks);
+        return more / static_cast<double>(kChunks);
     });
+    return std::max(0.0, seconds);
 }
 
 double barrier_seconds(int threads) {

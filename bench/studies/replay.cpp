@@ -79,7 +79,7 @@ std::vector<GroupedWay> all_ways() {
     return ways;
 }
 
-/// The costs of the study's paths and their model, found out when they are first asked for.
+/// The costs of the study's paths, their model, and OpenMP's costs, found out when they are first asked for.
 class Work {
   public:
     Work(std::shared_ptr<const StudyScene> scene, const RenderSettings& settings, int repeats)
@@ -92,6 +92,10 @@ class Work {
         if (fit_.seconds == 0) fit_ = fit_costs(*scene_, settings_, costs(), repeats_);
         return fit_;
     }
+    const OpenMpCosts& openmp() {
+        if (openmp_.threads.empty()) openmp_ = measure_openmp_costs(core_count());
+        return openmp_;
+    }
 
   private:
     std::shared_ptr<const StudyScene> scene_;
@@ -99,6 +103,7 @@ class Work {
     int repeats_;
     PathCosts costs_;
     CostFit fit_;
+    OpenMpCosts openmp_;
 };
 
 class ReplayStudy : public Study {
@@ -180,7 +185,7 @@ class ReplayStudy : public Study {
         add_model("a pool for all threads", shared, {});
         add_model(kThreadPools, own, {});
 
-        const OpenMpCosts openmp = measure_openmp_costs(most);
+        const OpenMpCosts& openmp = work.openmp();
         for (std::size_t i = 0; i < openmp.threads.size(); ++i)
             rows.push_back(sparse_row(all, {{"kind", "openmp"},
                                             {"threads", openmp.threads[i]},
@@ -225,14 +230,14 @@ class ReplayStudy : public Study {
         for (const Tally& tally : work.costs().items(settings.grain)) items.push_back(work.fit().model.seconds(tally));
         const ReplaySchedule schedule = to_replay(settings.schedule);
         const double alone = equal_work_seconds(scene, settings, 1)[0];
-        const double one = replay(items, schedule, 1, {chunk_fetch_seconds(1), 0}).makespan;
+        const double one = replay(items, schedule, 1, work.openmp().at(1)).makespan;
 
         std::vector<Row> rows;
         for (const int n : {1, threads}) {
             if (n == 1 && !rows.empty()) break;  // there is one core only
             std::vector<double> speeds = equal_work_seconds(scene, settings, n);
             for (double& speed : speeds) speed = alone / speed;
-            const Replayed replayed = replay(items, schedule, n, {chunk_fetch_seconds(n), 0}, speeds);
+            const Replayed replayed = replay(items, schedule, n, work.openmp().at(n), speeds);
             std::vector<double> busy = replayed.work;
             for (std::size_t i = 0; i < busy.size(); ++i) busy[i] /= speeds[i];
 
