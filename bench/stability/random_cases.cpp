@@ -1,0 +1,106 @@
+// Row 7a: seeds. Neighbouring pixels must not know of each other, and threads must not be seen.
+
+#include <cmath>
+
+#include "bench/naive/random.h"
+#include "bench/stability/case.h"
+#include "bench/stability/rays.h"
+#include "core/random.h"
+
+namespace raypool::stability {
+
+namespace {
+
+float our_first(std::uint32_t pixel) {
+    return random_block<float>(pixel, 0, random_block_id::kFilm, random_seed(0))[0];
+}
+
+/// Correlation of the first numbers of seeds that are so far apart.
+template <float (*first)(std::uint32_t)>
+double correlation(double apart, std::int64_t seeds) {
+    const auto distance = static_cast<std::uint32_t>(apart);
+    double x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+    for (std::uint32_t seed = 1; seed <= static_cast<std::uint32_t>(seeds); ++seed) {
+        const double a = static_cast<double>(first(seed));
+        const double b = static_cast<double>(first(seed + distance));
+        x += a, y += b, xx += a * a, yy += b * b, xy += a * b;
+    }
+    const double n = static_cast<double>(seeds);
+    return std::abs((xy - x * y / n) / std::sqrt((xx - x * x / n) * (yy - y * y / n)));
+}
+
+/// An image of 32 x 32 whose lines threads share as OpenMP's static schedule does: what a pixel's mean of 16 numbers
+/// is. Pixels that differ from the image of one thread.
+template <bool is_keyed>
+std::vector<float> image_of(int threads) {
+    constexpr int kEdge = 32;
+    std::vector<float> image;
+    for (int thread = 0; thread < threads; ++thread) {
+        naive::ThreadGenerator generator(static_cast<std::uint64_t>(thread));
+        for (int pixel = kEdge * thread / threads * kEdge; pixel < kEdge * (thread + 1) / threads * kEdge; ++pixel) {
+            float sum = 0;
+            for (std::uint32_t sample = 0; sample < 16; ++sample) {
+                sum += is_keyed ? random_block<float>(static_cast<std::uint32_t>(pixel), sample, random_block_id::kFilm,
+                                                      random_seed(0))[0]
+                                : generator.next();
+            }
+            image.push_back(sum);
+        }
+    }
+    return image;
+}
+template <bool is_keyed>
+double changed_pixels(double threads, std::int64_t) {
+    const std::vector<float> one = image_of<is_keyed>(1);
+    const std::vector<float> many = image_of<is_keyed>(static_cast<int>(threads));
+    std::int64_t changed = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) changed += one[i] != many[i] ? 1 : 0;
+    return share(changed, static_cast<std::int64_t>(one.size()));
+}
+
+template <float (*first)(std::uint32_t)>
+double time_first(std::int64_t calls) {
+    double sum = 0;
+    for (std::int64_t i = 0; i < calls; ++i) sum += static_cast<double>(first(static_cast<std::uint32_t>(i)));
+    return sum;
+}
+/// Four numbers a call.
+double time_block(std::int64_t calls) {
+    double sum = 0;
+    for (std::int64_t i = 0; i < calls / 4; ++i)
+        for (const float x : random_block<float>(static_cast<std::uint32_t>(i), 0, 0, random_seed(0)))
+            sum += static_cast<double>(x);
+    return sum;
+}
+
+}  // namespace
+
+std::vector<Case> random_cases() {
+    std::vector<Case> cases;
+    cases.push_back({.id = "neighbouring-seeds",
+                     .row = "7a",
+                     .parameter = "distance of two seeds",
+                     .values = {1024, 256, 64, 16, 4, 1},
+                     .measure = "correlation of their first numbers, absolute",
+                     .tolerance = 0.02,
+                     .symptom = "stripes and patterns in place of noise",
+                     .samples = 400'000,
+                     .methods = {{"minstd, seeded by the pixel", Kind::Naive, correlation<naive::minstd_first>,
+                                  time_first<naive::minstd_first>},
+                                 {"xorshift32, seeded by the pixel", Kind::Naive, correlation<naive::xorshift_first>,
+                                  time_first<naive::xorshift_first>},
+                                 {"ours, pcg4d", Kind::Ours, correlation<our_first>, time_block}}});
+    cases.push_back({.id = "seeds-by-thread",
+                     .row = "7a",
+                     .parameter = "threads",
+                     .values = {2, 3, 4, 7, 8},
+                     .measure = "pixels that differ from one thread's, share",
+                     .tolerance = 0,
+                     .symptom = "the image depends on the number of threads",
+                     .methods = {{"a generator a thread", Kind::Naive, changed_pixels<false>},
+                                 {"ours, keyed by pixel and sample", Kind::Ours, changed_pixels<true>}},
+                     .is_log_x = false});
+    return cases;
+}
+
+}  // namespace raypool::stability
