@@ -25,6 +25,8 @@ struct SceneNeeds {
     bool checker = false;     ///< 3-D checkers
     bool uv = false;          ///< textures that need surface coordinates: uv checkers and images
 
+    std::uint8_t variant = 0;  ///< no need but which methods kernels use (methods.h): 0 in every engine
+
     bool operator==(const SceneNeeds&) const = default;
 };
 

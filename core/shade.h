@@ -6,6 +6,7 @@
 
 #include "core/compiled_scene.h"
 #include "core/materials.h"
+#include "core/methods.h"
 #include "core/path.h"
 #include "core/shapes.h"
 #include "core/textures.h"
@@ -97,7 +98,8 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const CompiledScene<ScalarOf<Real>>& sc
         Vec3<Real> at;
         for (int i = 0; i < 3; ++i) at[i] = point.position[i] + texture[Tex::kOffset + i];
         if constexpr (needs.uv) at = select<Real>(is_checker_uv, vec3<Real>(uv[0], uv[1], Real(0)), at);
-        const Mask<Real> is_odd = (is_checker_3d || is_checker_uv) && is_odd_cell<Real>(at, scale);
+        const Mask<Real> is_odd =
+            (is_checker_3d || is_checker_uv) && Methods<needs.variant>::template is_odd_cell<Real>(at, scale);
         colour = select<Real>(is_odd, odd, colour);
     }
     if constexpr (needs.uv) {

@@ -44,11 +44,22 @@ RAYPOOL_INLINE Real plain_fresnel(const Real& cosine, const Real& eta) {
     return (r_s * r_s + r_p * r_p) / Real(2);
 }
 
+/// Snell's law by the sine of a cosine that rounding may have put above 1: the sine is then not a number.
+template <class Scalar>
+DielectricSplit<Scalar> unclamped_dielectric(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta) {
+    const Scalar cosine = -dot<Scalar>(direction, normal);
+    const Scalar sine_out = eta * std::sqrt(1 - cosine * cosine);
+    if (sine_out > 1) return {1, normal};
+    const Scalar cos_out = std::sqrt(1 - sine_out * sine_out);
+    return {schlick<Scalar>(cosine, eta),
+            unit<Scalar>(Vec3<Scalar>(eta * direction + (eta * cosine - cos_out) * normal))};
+}
+
 /// Total reflection is decided by the sine, and the root is taken of another form of the same number: where the two
-/// disagree it is that of a negative one. The cosine may be above 1 by rounding, and then the sine is not a number.
+/// disagree it is that of a negative one.
 template <class Scalar>
 DielectricSplit<Scalar> sine_dielectric(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta) {
-    const Scalar cosine = -dot<Scalar>(direction, normal);
+    const Scalar cosine = std::min(-dot<Scalar>(direction, normal), Scalar(1));
     const Scalar sine = std::sqrt(1 - cosine * cosine);
     if (eta * sine > 1) return {1, normal};
     const Scalar cos_out = std::sqrt(1 - eta * eta * (1 - cosine * cosine));

@@ -171,8 +171,7 @@ std::vector<Case> box_cases() {
                      {"clamped reciprocal, float", Kind::Naive, lattice_misses<float, naive::clamped_box<float>>,
                       time_box<naive::clamped_box<float>>},
                      {"ours, float", Kind::Ours, lattice_misses<float, our_box<float>>, time_box<our_box<float>>},
-                     {"ours, double", Kind::Ours, lattice_misses<double, our_box<double>>}},
-         .is_log_x = false});
+                     {"ours, double", Kind::Ours, lattice_misses<double, our_box<double>>}}});
     cases.push_back({.id = "box-edge",
                      .row = "3b",
                      .parameter = "distance of the ray's origin",

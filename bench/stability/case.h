@@ -40,7 +40,6 @@ struct Case {
     std::vector<Method> methods;
     std::size_t held = 0;    ///< how many of the values ours must hold; 0: all
     std::string limit = {};  ///< why ours does not hold the rest
-    bool is_log_x = true;
 
     [[nodiscard]] std::size_t held_values() const { return held == 0 ? values.size() : held; }
     /// A method that does not exist is a bug.
@@ -65,5 +64,6 @@ std::vector<Case> random_cases();
 std::vector<Case> texture_cases();
 std::vector<Case> size_cases();
 std::vector<Case> flat_cases();
+std::vector<Case> image_cases();
 
 }  // namespace raypool::stability

@@ -141,20 +141,22 @@ double furnace(double translation, std::int64_t paths) {
 
 std::vector<Case> leaving_cases() {
     std::vector<Case> cases;
-    cases.push_back({.id = "acne-far",
-                     .row = "2a",
-                     .parameter = "distance of the scene from the origin, radius 1",
-                     .values = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6},
-                     .measure = "diffuse rays that meet the sphere they leave, share",
-                     .tolerance = 0,
-                     .symptom = "acne: dark specks all over the surface",
-                     .samples = 200'000,
-                     .methods = {{"least distance 0, float", Kind::Naive, acne_by_translation<float, NoEpsilon>},
-                                 {"least distance 1e-3, float", Kind::Naive, acne_by_translation<float, BookEpsilon>},
-                                 {"offset origin, float", Kind::Alternative, acne_by_translation<float, Offset>},
-                                 {"ours, float", Kind::Ours, acne_by_translation<float, Ours>},
-                                 {"ours, double", Kind::Ours, acne_by_translation<double, Ours>}},
-                     .held = 5});
+    cases.push_back(
+        {.id = "acne-far",
+         .row = "2a",
+         .parameter = "distance of the scene from the origin, radius 1",
+         .values = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6},
+         .measure = "diffuse rays that meet the sphere they leave, share",
+         .tolerance = 0,
+         .symptom = "acne: dark specks all over the surface",
+         .samples = 200'000,
+         .methods = {{"least distance 0, float", Kind::Naive, acne_by_translation<float, NoEpsilon>},
+                     {"least distance 1e-3, float", Kind::Naive, acne_by_translation<float, BookEpsilon>},
+                     {"offset origin, float", Kind::Alternative, acne_by_translation<float, Offset>},
+                     {"ours, float", Kind::Ours, acne_by_translation<float, Ours>},
+                     {"ours, double", Kind::Ours, acne_by_translation<double, Ours>}},
+         .held = 6,
+         .limit = "across the diameter float has 32 positions there, and the normal is not that of the rounded point"});
     cases.push_back({.id = "acne-large",
                      .row = "2a",
                      .parameter = "radius, at the origin",
@@ -200,8 +202,7 @@ std::vector<Case> leaving_cases() {
                      .samples = 300,
                      .methods = {{"least distance 1e-3, float", Kind::Naive, furnace<float, BookEpsilon>},
                                  {"ours, float", Kind::Ours, furnace<float, Ours>},
-                                 {"ours, double", Kind::Ours, furnace<double, Ours>}},
-                     .held = 5});
+                                 {"ours, double", Kind::Ours, furnace<double, Ours>}}});
     return cases;
 }
 

@@ -125,8 +125,7 @@ std::vector<Case> path_cases() {
                      .tolerance = 0,
                      .symptom = "none but time: faded paths cost a hundred times more, for ever",
                      .methods = {{"as the processor comes, float", Kind::Naive, stuck_denormal, time_multiply},
-                                 {"ours, flushed to zero, float", Kind::Ours, stuck_flushed, time_flushed}},
-                     .is_log_x = false});
+                                 {"ours, flushed to zero, float", Kind::Ours, stuck_flushed, time_flushed}}});
     cases.push_back(
         {.id = "depth-limit",
          .row = "5c",

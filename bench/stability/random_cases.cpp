@@ -98,8 +98,7 @@ std::vector<Case> random_cases() {
                      .tolerance = 0,
                      .symptom = "the image depends on the number of threads",
                      .methods = {{"a generator a thread", Kind::Naive, changed_pixels<false>},
-                                 {"ours, keyed by pixel and sample", Kind::Ours, changed_pixels<true>}},
-                     .is_log_x = false});
+                                 {"ours, keyed by pixel and sample", Kind::Ours, changed_pixels<true>}}});
     return cases;
 }
 

@@ -25,8 +25,10 @@ template <class Scalar>
 Vec3<double> wide(const Vec3<Scalar>& v) {
     return v.template cast<double>();
 }
+/// Not inlined: of float(x) turned back into double, three side by side, g++ 12 makes x (with -O2 and vectors), and so
+/// aims at where the rounded point is not.
 template <class Scalar>
-Vec3<Scalar> narrow(const Vec3<double>& v) {
+[[gnu::noinline]] Vec3<Scalar> narrow(const Vec3<double>& v) {
     return v.cast<Scalar>();
 }
 inline Vec3<double> perpendicular(RandomInputs& random, const Vec3<double>& n) {

@@ -123,8 +123,7 @@ std::vector<Case> scattering_cases() {
                      {"ours, float", Kind::Ours, unit_error<float, OurUnit>},
                      {"ours, double", Kind::Ours, unit_error<double, OurUnit>}},
          .held = 5,
-         .limit = "lengths whose squares are no normal numbers of their type are outside of unit()'s range",
-         .is_log_x = false});
+         .limit = "lengths whose squares are no normal numbers of their type are outside of unit()'s range"});
     for (const double fuzz : {0.3, 1.0}) {
         const auto wrong = [fuzz](auto scalar) {
             return [fuzz, scalar](double degrees, std::int64_t samples) {
@@ -146,8 +145,7 @@ std::vector<Case> scattering_cases() {
                          .samples = 100'000,
                          .methods = {{"what is absorbed", Kind::Alternative, lost},
                                      {"ours, float, from the model's share", Kind::Ours, wrong(0.0F)},
-                                     {"ours, double, from the model's share", Kind::Ours, wrong(0.0)}},
-                         .is_log_x = false});
+                                     {"ours, double, from the model's share", Kind::Ours, wrong(0.0)}}});
     }
     const auto naive_word = [](double words, std::int64_t n) { return not_below_one(words, n, naive::word_to_unit); };
     const auto our_word = [](double words, std::int64_t n) {

@@ -64,12 +64,15 @@ double random_sum(double terms, std::int64_t) {
 }
 
 /// Radiance with a heavy tail, in 30 orders: the greatest sum less the least, over the mean.
-constexpr float kBrightest = 1000;
+constexpr float kBrightest = 1e4F;
 template <class Sum>
 double order_spread(double terms, std::int64_t) {
     RandomInputs random(72);
     std::vector<float> radiance(static_cast<std::size_t>(terms));
-    for (float& x : radiance) x = std::min(kBrightest, 1 / (random.unit_interval<float>() + 0x1p-24F));
+    for (float& x : radiance) {
+        const float u = random.unit_interval<float>() + 0x1p-24F;
+        x = std::min(kBrightest, 1e-5F / (u * u));
+    }
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (int order = 0; order < 30; ++order) {

@@ -226,6 +226,7 @@ bool run_study(const Study& study, const StudyOptions& options, const fs::path& 
     }
     const Summary summary = study.summarise(data.table(), options);
     add_summary(run, summary);
+    study.write_images(folder, options);
     write_text(folder / "summary.md", summary_page(run));
     write_text(folder / "run.json", run.dump(2) + "\n");
     return true;

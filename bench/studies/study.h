@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -84,6 +85,8 @@ class Study {
     [[nodiscard]] virtual std::vector<Case> cases(const StudyOptions& options) const = 0;
     /// From all rows of all cases ("case", "repeat" and the study's columns).
     [[nodiscard]] virtual Summary summarise(const Table& data, const StudyOptions& options) const = 0;
+    /// Images that the study renders itself, for its pictures to show; written into the folder of its data.
+    virtual void write_images(const std::filesystem::path& /*folder*/, const StudyOptions& /*options*/) const {}
 };
 
 /// What the options ask for, or what the study would do by itself.

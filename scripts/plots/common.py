@@ -42,9 +42,9 @@ TEXT_COLUMNS = {"case", "hash"}
 
 
 def read(folder):
-    """run.json, and the rows of data.csv."""
+    """run.json with the folder that it is in, and the rows of data.csv."""
     folder = Path(folder)
-    run = json.loads((folder / "run.json").read_text())
+    run = {**json.loads((folder / "run.json").read_text()), "folder": str(folder)}
     with open(folder / "data.csv", newline="") as file:
         rows = [Row({k: v if k in TEXT_COLUMNS else _value(v) for k, v in row.items()}) for row in csv.DictReader(file)]
     return run, rows

@@ -37,6 +37,19 @@ class StudyTest(CommandTest):
             self.assertTrue((folder / f"{picture['name']}.png").read_bytes().startswith(b"\x89PNG"))
         return run
 
+    def check_verdicts(self, rows):
+        """Ours holds its tolerance wherever it is asked to, and each naive method breaks somewhere."""
+        broken = {}
+        for row in rows:
+            if row["kind"] != "curve":
+                continue
+            is_broken = float(row["error"]) > float(row["tolerance"])
+            key = (row["id"], row["method"], row["method_kind"])
+            broken[key] = broken.get(key, False) or (is_broken and (row["is_asked"] == "1" or row["method_kind"] != "ours"))
+        self.assertGreater(len(broken), 100)
+        self.assertEqual([key for key, is_broken in broken.items() if is_broken and key[2] == "ours"], [])
+        self.assertEqual([key for key, is_broken in broken.items() if not is_broken and key[2] == "naive"], [])
+
     def test_every_study_leaves_data_summary_and_pictures(self):
         names = self.names()
         self.assertIn("schedules", names)
@@ -50,6 +63,10 @@ class StudyTest(CommandTest):
                     self.assertRegex(page, r"\*\*(holds|does not hold|cannot be told here)")
                 else:
                     self.check_folder(self.folder / "out" / name)
+                if name == "stability":
+                    for image in ("acne_naive", "acne_ours", "acne_difference"):
+                        self.assertTrue((self.folder / "out/stability" / f"{image}.png").exists(), image)
+                    self.check_verdicts(rows_of(self.folder / "out/stability"))
 
     def test_ctrl_c_loses_no_finished_row_and_repeats_none(self):
         arguments = ["study", "schedules", "--quick", "--width", "64", "--spp", "16", "--repeats", "5"]

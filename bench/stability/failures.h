@@ -1,0 +1,44 @@
+/// Pictures of failure: scenes on which one naive method ruins the image, rendered with it and with ours.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/engine.h"
+#include "core/image.h"
+#include "core/scene.h"
+
+namespace raypool::stability {
+
+/// A variant of the kernels (core/methods.h) with one naive method in the place of ours.
+enum class NaiveVariant : std::uint8_t {
+    LeastDistance = 1,  ///< a hit closer than 1e-3 does not count, and a ray does not know what it leaves
+    HalfB = 2,          ///< the quadratic of the books
+    Truncation = 3      ///< checkers by rounding towards zero
+};
+
+/// The iterative engine in single precision, compiled for a variant and for what the scenes below need.
+RenderReport render_naively(NaiveVariant variant, const CompiledScene<float>& scene, const RenderSettings& settings,
+                            Framebuffer& framebuffer);
+
+struct Failure {
+    std::string id;  ///< the picture's name
+    std::string row;
+    std::string title;
+    std::string caption;
+    NaiveVariant variant;
+    Scene scene;
+};
+const std::vector<Failure>& all_failures();
+
+/// One scene three times: by the naive variant, by the engine in float, and by the engine in double.
+struct FailureImages {
+    Image naive, ours, reference;
+};
+FailureImages render_failure(NaiveVariant variant, const Scene& scene, const RenderSettings& settings);
+
+/// Part of the pixels with a channel off by more than 0.02.
+double changed_share(const Image& image, const Image& reference);
+
+}  // namespace raypool::stability
