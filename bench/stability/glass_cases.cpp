@@ -139,7 +139,7 @@ std::vector<Case> glass_cases() {
         {.id = "head-on",
          .row = "4b",
          .parameter = "sine of the angle of arrival, at most",
-         .values = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5},
+         .values = {1e-1, 1e-2, 1e-3, 1e-4, 1e-8},
          .measure = "rays that become not-a-numbers, share",
          .tolerance = 0,
          .symptom = "black or white dots in the middle of glass spheres",

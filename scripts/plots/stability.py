@@ -4,12 +4,18 @@ from pathlib import Path
 from common import COLOURS, MARKERS, distinct, plt, where
 
 LINES = {"naive": "--", "ours": "-", "other": ":"}
+PALETTE = {"naive": [COLOURS[3], COLOURS[1], COLOURS[5]], "ours": [COLOURS[0], COLOURS[6], COLOURS[2]],
+           "other": [COLOURS[4], COLOURS[2]]}
 ROWS = {"spheres": "1", "leaving": "2", "boxes": "3", "scattering": "4", "paths": "56", "others": "78+"}
 
 
 def belongs(row, rows):
     first = "8" if row["row"].startswith("10") else row["row"][0]  # large images go with the checkers
     return first in rows
+
+
+def order(row):
+    return (99, row) if row == "+" else (int(row[:-1]), row[-1])
 
 
 def panel(axis, case, rows):
@@ -21,10 +27,13 @@ def panel(axis, case, rows):
     floor = min(positive + ([tolerance] if tolerance > 0 else []) + [1e-3]) / 8
     is_log = min(values) > 0 and max(values) >= 50 * min(values)
     places = values if is_log else range(len(values))
+    seen = dict.fromkeys(LINES, 0)
     for i, method in enumerate(methods):
         of_method = where(rows, method=method)
         kind = of_method[0]["method_kind"]
-        axis.plot(places, [max(row["error"], floor) for row in of_method], linestyle=LINES[kind], color=COLOURS[i],
+        colour = PALETTE[kind][seen[kind]]
+        seen[kind] += 1
+        axis.plot(places, [max(row["error"], floor) for row in of_method], linestyle=LINES[kind], color=colour,
                   marker=MARKERS[i], markersize=4.5, linewidth=2.2 if kind == "ours" else 1.3, label=method,
                   zorder=3 if kind == "ours" else 2, clip_on=False)
     if tolerance > 0:
@@ -50,7 +59,7 @@ def panel(axis, case, rows):
 def curves(name):
     def draw(run, rows):
         rows = [row for row in where(rows, kind="curve") if belongs(row, ROWS[name])]
-        cases = distinct(rows, "id")
+        cases = sorted(distinct(rows, "id"), key=lambda case: order(where(rows, id=case)[0]["row"]))
         columns = 3
         lines = -(-len(cases) // columns)
         figure, axes = plt.subplots(lines, columns, figsize=(13, 3.1 * lines + 0.9), squeeze=False)
