@@ -159,7 +159,7 @@ std::vector<Case> sum_cases() {
                      .row = "6a",
                      .parameter = "terms",
                      .values = {1e4, 1e5, 1e6, 1e7, 1e8},
-                     .measure = "sum of numbers in [0, 1), relative error",
+                     .measure = "sum of random numbers below 1, relative error",
                      .tolerance = 1e-7,
                      .symptom = "bright pixels stay too dark, the longer the render the more",
                      .methods = {{"float", Kind::Naive, random_sum<PlainSum<float>>},
