@@ -126,7 +126,7 @@ std::vector<Case> scattering_cases() {
          .limit = "lengths whose squares are no normal numbers of their type are outside of unit()'s range"});
     for (const double fuzz : {0.3, 1.0}) {
         const auto wrong = [fuzz](auto scalar) {
-            return [fuzz, scalar](double degrees, std::int64_t samples) {
+            return [fuzz](double degrees, std::int64_t samples) {
                 const double cosine = std::cos(degrees * std::numbers::pi / 180);
                 const double expected = std::max(0.0, (1 - cosine / fuzz) / 2);
                 return std::abs(fuzz_below<decltype(scalar)>(degrees, samples, fuzz) - expected);
