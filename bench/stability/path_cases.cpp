@@ -18,7 +18,7 @@ double killed(double depth, std::int64_t) {
     return survives(how, static_cast<std::int64_t>(depth)) ? 0 : 1;
 }
 
-/// Throughput after 20 000 bounces: 1 where it still is a number beside zero, and one that costs a hundred times more.
+/// Throughput after 20 000 bounces: 1 where it still is a denormal number.
 double stuck(float albedo) {
     volatile float throughput = 1;
     for (int i = 0; i < 20'000; ++i) throughput = throughput * albedo;
@@ -117,15 +117,16 @@ std::vector<Case> path_cases() {
                      .methods = {{"recursion, unasked", Kind::Naive, killed<Deep::Recursion>},
                                  {"ours, recursion that refuses", Kind::Ours, killed<Deep::Checked>},
                                  {"ours, a loop", Kind::Ours, killed<Deep::Loop>}}});
-    cases.push_back({.id = "denormals",
-                     .row = "5b",
-                     .parameter = "albedo",
-                     .values = {0.4, 0.6, 0.8, 0.9, 0.97},
-                     .measure = "throughputs that never reach 0",
-                     .tolerance = 0,
-                     .symptom = "none but time: faded paths cost a hundred times more, for ever",
-                     .methods = {{"as the processor comes, float", Kind::Naive, stuck_denormal, time_multiply},
-                                 {"ours, flushed to zero, float", Kind::Ours, stuck_flushed, time_flushed}}});
+    cases.push_back(
+        {.id = "denormals",
+         .row = "5b",
+         .parameter = "albedo",
+         .values = {0.4, 0.6, 0.8, 0.9, 0.97},
+         .measure = "throughputs that never reach 0",
+         .tolerance = 0,
+         .symptom = "none but time: faded paths go on for ever, and on some processors cost a hundred times more",
+         .methods = {{"as the processor comes, float", Kind::Naive, stuck_denormal, time_multiply},
+                     {"ours, flushed to zero, float", Kind::Ours, stuck_flushed, time_flushed}}});
     cases.push_back(
         {.id = "depth-limit",
          .row = "5c",
