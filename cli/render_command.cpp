@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <limits>
@@ -41,6 +42,7 @@ struct RenderOptions {
     int split_depth = 0;
     std::string seed = "0";
     std::string samples;
+    double target_error = 0;
     int threads = 0;  ///< 0: OpenMP's
     std::string schedule;
     std::string grain = "line";
@@ -143,6 +145,14 @@ void print_summary(const RenderRecord& record) {
         fmt::print("{:.2f} box tests and {:.2f} primitive tests a segment\n",
                    static_cast<double>(report.total(&ThreadWork::box_tests)) / segments,
                    static_cast<double>(report.total(&ThreadWork::primitive_tests)) / segments);
+    if (record.target_error > 0) {
+        const auto [least, most] =
+            std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
+        fmt::print(
+            "estimated RMSE {:.4g} (asked for {:.4g}) after {} rounds; {} to {} samples a pixel, {:.1f} on average\n",
+            record.adaptive.rmse, record.target_error, record.adaptive.rounds, *least, *most,
+            record.adaptive.mean_samples());
+    }
     if (report.pool_bytes > 0)
         fmt::print("ray record of {} bytes; pools at most {:.2f} MB\n", report.record_bytes,
                    static_cast<double>(report.pool_bytes) / (1024 * 1024));
@@ -167,17 +177,22 @@ Image render_scene(const Scene& scene, bool is_quiet, RenderRecord& record) {
     record.needs = compiled.needs;
     record.compile_s = watch.lap();
 
-    Framebuffer framebuffer(compiled.width, compiled.height, FixedPoint::make(record.spp, compiled.max_radiance));
+    const bool is_adaptive = record.target_error > 0;
+    Framebuffer framebuffer(compiled.width, compiled.height, FixedPoint::make(record.spp, compiled.max_radiance),
+                            is_adaptive ? Moments::Second : Moments::First);
+    const std::unique_ptr<Engine> engine = make_engine(record.engine, record.pool);
     Progress progress;
     record.settings.progress = &progress;
-    const std::int64_t sample_count = record.settings.end_sample - record.settings.first_sample;
     {
-        const ProgressBar bar(progress, compiled.pixel_count() * sample_count, {"M paths/s", 1e-6}, is_quiet);
-        record.report = make_engine(record.engine, record.pool)->render(compiled, record.settings, framebuffer);
+        const ProgressBar bar(progress, path_count(compiled, record.settings), {"M paths/s", 1e-6}, is_quiet);
+        record.report = is_adaptive ? render_adaptively(*engine, compiled, record.settings, record.target_error,
+                                                        framebuffer, record.adaptive)
+                                    : engine->render(compiled, record.settings, framebuffer);
     }
     record.settings.progress = nullptr;
     record.hash = framebuffer.hash();
-    return framebuffer.image(sample_count);
+    return is_adaptive ? framebuffer.image(record.adaptive.sample_counts)
+                       : framebuffer.image(record.settings.end_sample - record.settings.first_sample);
 }
 
 void render(const RenderOptions& options) {
@@ -187,6 +202,9 @@ void render(const RenderOptions& options) {
     record.spp = options.spp;
     record.precision = options.precision == "double" ? Precision::Double : Precision::Float;
     record.engine = options.engine;
+    record.target_error = options.target_error;
+    if (options.target_error > 0 && !options.samples.empty())
+        throw InputError("--samples: which samples a pixel gets is for --target-error to decide");
     if (!options.output.empty()) {
         image_format(options.output);
         check_writable(options.output);
@@ -245,6 +263,10 @@ void add_render_command(CLI::App& app, int&) {
     command->add_option("--spp", options->spp, "Samples per pixel (default: 100)")
         ->check(CLI::Range(std::int64_t{1}, kMostSpp));
     command->add_option("--samples", options->samples, "Only samples A:B of them, counted from 0, without B");
+    command
+        ->add_option("--target-error", options->target_error,
+                     "Give pixels samples, at most --spp, until the image's estimated RMSE is at most this radiance")
+        ->check(CLI::Range(1e-9, 1e9));
     command->add_option("--width", options->width, "Image width; the height follows (default: the scene's)")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
     command->add_option("--depth", options->depth, "Most segments of a path (default: 50)")

@@ -1,5 +1,7 @@
 #include "cli/stats_json.h"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/pool_options.h"
@@ -26,6 +28,7 @@ json settings_json(const RenderRecord& record) {
                 {"schedule", to_string(settings.schedule)},
                 {"grain", to_string(settings.grain)},
                 {"count_work", settings.count_work}};
+    if (record.target_error > 0) result["target_error"] = record.target_error;
     if (record.engine == "wavefront") result["pool"] = to_json(record.pool);
     return result;
 }
@@ -75,6 +78,14 @@ json stats_json(const RenderRecord& record) {
                {"settings", settings_json(record)},
                {"environment", environment_json()},
                {"threads", threads}};
+    if (record.target_error > 0) {
+        const auto [least, most] =
+            std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
+        stats["adaptive"] = {
+            {"rmse_estimate", record.adaptive.rmse},
+            {"rounds", record.adaptive.rounds},
+            {"samples_per_pixel", {{"least", *least}, {"mean", record.adaptive.mean_samples()}, {"most", *most}}}};
+    }
     if (record.engine == "wavefront") {
         stats["record_bytes"] = report.record_bytes;
         stats["pool_bytes"] = report.pool_bytes;

@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "cli/options.h"
+#include "core/adaptive.h"
 #include "core/engine.h"
 #include "wavefront/settings.h"
 
@@ -24,6 +25,8 @@ struct RenderRecord {
     RenderSettings settings;
     wavefront::PoolSettings pool;  ///< of the wavefront engine
     RenderReport report;
+    double target_error = 0;  ///< 0: every pixel has the same number of samples
+    AdaptiveReport adaptive;
     std::string hash;
     double read_s = 0;     ///< scene file to description
     double compile_s = 0;  ///< description to tables

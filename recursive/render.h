@@ -28,8 +28,7 @@ std::size_t stack_bytes_per_bounce() {
     const CompiledScene<Scalar> scene = compile<Scalar>(inside_sphere);
     const auto deepest = [&](std::int32_t depth) {
         Tracer<needs, Scalar, Work, splitting> tracer(scene, random_seed(0), depth, 0, FixedPoint::make(1, 1));
-        FixedRgb sum{};
-        tracer.template sample<Form::Recursive>(0, 0, 0, sum);
+        tracer.template sample<Form::Recursive>(0, 0, 0);
         return tracer.deepest_stack();
     };
     constexpr int kBounces = 64;
@@ -60,6 +59,7 @@ void check_stack(std::int32_t depth, int threads) {
 
 template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting = Splitting::Off>
 RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {
+    check_settings(settings, framebuffer);
     if constexpr (form == Form::Recursive) {
         check_stack<needs, Scalar, Work, splitting>(settings.depth, settings.threads);
     }
@@ -70,6 +70,8 @@ RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& se
         ProgressBatch progress(settings.progress);
         ItemLog log(settings, omp_get_thread_num());
         PixelCost cost(settings.cost_image);
+        ChosenPixels chosen(settings.pixels);
+        const bool has_squares = framebuffer.has_squares();
 
 #pragma omp for schedule(runtime) nowait
         for (std::int64_t item = 0; item < items.count(); ++item) {
@@ -77,12 +79,19 @@ RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& se
             log.start(range);
             for (std::int64_t y = range.y_begin; y < range.y_end; ++y) {
                 for (std::int64_t x = range.x_begin; x < range.x_end; ++x) {
+                    const std::int64_t pixel = y * scene.width + x;
+                    if (!chosen.contains(pixel)) continue;
                     FixedRgb sum{};
+                    std::int64_t square = 0;
                     cost.start(tracer);
-                    for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s)
-                        tracer.template sample<form>(x, y, s, sum);
-                    cost.stop(tracer, y * scene.width + x);
-                    framebuffer.add(y * scene.width + x, sum);
+                    for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s) {
+                        const FixedRgb& sample = tracer.template sample<form>(x, y, s);
+                        for (int i = 0; i < 3; ++i) sum[i] += sample[i];
+                        if (has_squares) square += tracer.square(sample);
+                    }
+                    cost.stop(tracer, pixel);
+                    framebuffer.add(pixel, sum);
+                    if (has_squares) framebuffer.add_square(pixel, square);
                     work.paths += settings.end_sample - settings.first_sample;
                     progress.add(settings.end_sample - settings.first_sample);
                 }

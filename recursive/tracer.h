@@ -38,9 +38,9 @@ class Tracer {
            const FixedPoint& fixed)
         : scene_(scene), seed_(seed), depth_(depth), split_depth_(split_depth), converter_(fixed) {}
 
-    /// Adds one sample to `sum`.
+    /// One sample, whole.
     template <Form form>
-    void sample(std::int64_t x, std::int64_t y, std::int64_t sample_id, FixedRgb& sum) {
+    const FixedRgb& sample(std::int64_t x, std::int64_t y, std::int64_t sample_id) {
         const PathKey<Scalar> key{static_cast<std::uint32_t>(y * scene_.width + x),
                                   static_cast<std::uint32_t>(sample_id)};
         const Ray<Scalar> ray = camera_ray<needs, Scalar>(scene_.camera, static_cast<Scalar>(x), static_cast<Scalar>(y),
@@ -52,11 +52,12 @@ class Tracer {
         } else {
             iterate(path);
         }
-        for (int i = 0; i < 3; ++i) sum[i] += sum_[i];
+        return sum_;
     }
 
     [[nodiscard]] std::int64_t segments() const { return segments_; }
     [[nodiscard]] const Work& work() const { return work_; }
+    [[nodiscard]] std::int64_t square(const FixedRgb& sample) const { return converter_.square(sample); }
     [[nodiscard]] const SampleAudit& audit() const { return converter_.audit(); }
     [[nodiscard]] std::uintptr_t deepest_stack() const { return deepest_stack_; }
 

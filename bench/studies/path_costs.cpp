@@ -44,8 +44,7 @@ LineLog record_line(const CompiledScene<float>& scene, const RenderSettings& set
     for (std::int64_t x = 0; x < scene.width; ++x) {
         for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s) {
             const std::int64_t before = tracer.segments();
-            FixedRgb sum{};
-            tracer.template sample<recursive::Form::Iterative>(x, y, s, sum);
+            tracer.template sample<recursive::Form::Iterative>(x, y, s);
             line.path_segments.push_back(static_cast<std::uint32_t>(tracer.segments() - before));
         }
     }
@@ -67,11 +66,9 @@ std::vector<double> time_lines(const CompiledScene<float>& scene, const RenderSe
     std::vector<double> seconds;
     for (std::int64_t y = 0; y < scene.height; y += step) {
         const double start = processor_seconds();
-        for (std::int64_t x = 0; x < scene.width; ++x) {
-            FixedRgb sum{};
+        for (std::int64_t x = 0; x < scene.width; ++x)
             for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s)
-                tracer.template sample<recursive::Form::Recursive>(x, y, s, sum);
-        }
+                tracer.template sample<recursive::Form::Recursive>(x, y, s);
         seconds.push_back(processor_seconds() - start);
     }
     return seconds;
