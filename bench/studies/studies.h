@@ -16,5 +16,6 @@ std::unique_ptr<Study> schedules_study();
 std::unique_ptr<Study> load_study();
 std::unique_ptr<Study> replay_study();
 std::unique_ptr<Study> scaling_study();
+std::unique_ptr<Study> speed_accuracy_study();
 
 }  // namespace raypool::studies
