@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -203,6 +204,7 @@ void render(const RenderOptions& options) {
     record.precision = options.precision == "double" ? Precision::Double : Precision::Float;
     record.engine = options.engine;
     record.target_error = options.target_error;
+    if (std::isnan(options.target_error)) throw InputError("--target-error: not a number");
     if (options.target_error > 0 && !options.samples.empty())
         throw InputError("--samples: which samples a pixel gets is for --target-error to decide");
     if (!options.output.empty()) {

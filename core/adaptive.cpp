@@ -41,7 +41,8 @@ std::vector<double> smoothed(const std::vector<double>& values, std::int64_t wid
     return out;
 }
 
-/// Where a pixel with `count` samples stops next: a quarter more each time, so that few samples are taken for nothing.
+/// Where a pixel with `count` samples may stop next: a quarter more, so that few samples are taken for nothing. One that
+/// wants more goes on to at most twice what it has before it is looked at again.
 std::int64_t next_stop(std::int64_t count) {
     return count == 0 ? AdaptivePlan::kFirstSamples : count + (count + 3) / 4;
 }
@@ -92,17 +93,20 @@ std::vector<SamplePass> AdaptivePlan::next(const Framebuffer& framebuffer) {
 }
 
 std::vector<SamplePass> AdaptivePlan::passes(const std::vector<float>& wanted) {
-    std::map<std::int32_t, SamplePass> by_count;
+    std::map<std::pair<std::int64_t, std::int64_t>, SamplePass> by_range;
     for (std::size_t i = 0; i < counts_.size(); ++i) {
         if (counts_[i] >= most_samples_ || static_cast<float>(counts_[i]) >= wanted[i]) continue;
-        SamplePass& pass = by_count[counts_[i]];
-        pass.first = counts_[i];
-        pass.end = std::min(next_stop(pass.first), most_samples_);
+        const std::int64_t first = counts_[i];
+        std::int64_t end = next_stop(first);
+        while (static_cast<float>(end) < wanted[i] && next_stop(end) <= 2 * first) end = next_stop(end);
+        SamplePass& pass = by_range[{first, end}];
+        pass.first = first;
+        pass.end = std::min(end, most_samples_);
         pass.pixels.push_back(static_cast<std::uint32_t>(i));
         counts_[i] = static_cast<std::int32_t>(pass.end);
     }
     std::vector<SamplePass> list;
-    for (auto& [count, pass] : by_count) list.push_back(std::move(pass));
+    for (auto& [range, pass] : by_range) list.push_back(std::move(pass));
     return list;
 }
 

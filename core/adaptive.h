@@ -54,7 +54,7 @@ class AdaptivePlan {
     [[nodiscard]] int rounds() const { return rounds_; }
 
   private:
-    /// Brings pixels that have fewer samples than wanted to their next stop.
+    /// Brings pixels that have fewer samples than wanted to a next stop.
     std::vector<SamplePass> passes(const std::vector<float>& wanted);
 
     double target_error_;

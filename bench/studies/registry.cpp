@@ -20,6 +20,7 @@ std::vector<std::unique_ptr<Study>> all_studies() {
     studies.push_back(needs_study());
     studies.push_back(depth_study());
     studies.push_back(speed_accuracy_study());
+    studies.push_back(adaptive_study());
     return studies;
 }
 

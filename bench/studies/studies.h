@@ -7,6 +7,7 @@
 
 namespace raypool::studies {
 
+std::unique_ptr<Study> adaptive_study();
 std::unique_ptr<Study> depth_study();
 std::unique_ptr<Study> framebuffer_study();
 std::unique_ptr<Study> ladder_study();

@@ -50,6 +50,21 @@ class Small(CommandTest):
         colours = {tuple(pixels[i:i + 3]) for i in range(0, len(pixels), 3)}
         self.assertEqual(colours, {(0.0, 0.0, 0.0), (0.25, 0.5, 1.0)})
 
+    def test_target_error_stops_where_it_is_reached_or_at_the_most_samples(self):
+        self.run_well("render", "half_sky", "--width", 32, "--target-error", 0.008, "--spp", 5000, "--stats", "s.json",
+                      "-o", "out.pfm", "--quiet")
+        stats = json.loads((self.folder / "s.json").read_text())
+        adaptive = stats["adaptive"]
+        self.assertLessEqual(adaptive["rmse_estimate"], 0.008)
+        counts = adaptive["samples_per_pixel"]
+        self.assertLess(counts["least"], counts["most"])
+        self.assertEqual(stats["paths"], round(counts["mean"] * 32 * 18))
+        self.run_well("render", "half_sky", "--width", 32, "--spp", 4096, "--seed", 7, "-o", "truth.pfm", "--quiet")
+        error = float(self.run_command("diff", "out.pfm", "truth.pfm").stdout.split("RMSE")[1].split()[0])
+        self.assertLess(error, 0.012)
+        stats = self.stats("--target-error", 1e-6, "--spp", 20)
+        self.assertEqual(stats["adaptive"]["samples_per_pixel"]["most"], 20)
+
     def test_empty_scene_is_its_background(self):
         empty = changed(changed(changed(SCENE, "/shapes", []), "/materials"), "/textures")
         for precision in ("float", "double"):
