@@ -7,15 +7,12 @@
 #include <string_view>
 
 #include "core/settings_text.h"
+#include "core/sums_file.h"
 
 namespace raypool::cli {
 
 enum class Precision : std::uint8_t { Float, Double };
 
-struct SampleRange {
-    std::int64_t first;
-    std::int64_t end;
-};
 /// "A:B" with 0 <= A < B <= spp.
 SampleRange parse_samples(std::string_view text, std::int64_t spp);
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/pool_options.h"
@@ -20,6 +21,8 @@
 #include "core/heat_map.h"
 #include "core/image_file.h"
 #include "core/output_file.h"
+#include "core/progressive.h"
+#include "core/scene_hash.h"
 #include "core/scene_reader.h"
 #include "core/trace.h"
 #include "recursive/engine.h"
@@ -50,6 +53,7 @@ struct RenderOptions {
     std::string precision = "float";
     bool count_work = false;
     bool is_quiet = false;
+    CheckpointOptions checkpoint;
     PoolOptions pool;
 };
 
@@ -171,33 +175,94 @@ void print_trace(const std::string& file, const Trace& trace) {
     fmt::print("\n");
 }
 
+/// All that fixes the image. Threads, engine and pool do not.
+ImageKey image_key(const Scene& scene, const RenderRecord& record) {
+    const RenderSettings& settings = record.settings;
+    return {{"scene", scene_hash(scene)},
+            {"width", fmt::to_string(scene.width)},
+            {"height", fmt::to_string(scene.height)},
+            {"spp", fmt::to_string(record.spp)},
+            {"depth", fmt::to_string(settings.depth)},
+            {"split_depth", fmt::to_string(settings.split_depth)},
+            {"seed", fmt::to_string(settings.seed)},
+            {"precision", record.precision == Precision::Float ? "float" : "double"},
+            {"target_error", fmt::to_string(record.target_error)}};
+}
+
+/// Renders what `sums` lacks, and keeps checkpoints.
 template <class Scalar>
-Image render_scene(const Scene& scene, bool is_quiet, RenderRecord& record) {
+RenderReport render_missing(const CompiledScene<Scalar>& scene, const RenderRecord& record, RenderSums& sums,
+                            AdaptiveReport& adaptive, Checkpoint& checkpoint) {
+    const std::unique_ptr<Engine> engine = make_engine(record.engine, record.pool);
+    if (record.target_error > 0) {
+        std::vector<std::int32_t> counts = sums.sample_counts;
+        if (counts.empty()) counts.resize(static_cast<std::size_t>(scene.pixel_count()));
+        AdaptivePlan plan(record.target_error, record.settings.end_sample, std::move(counts), sums.rounds);
+        const auto keep = [&] {
+            sums.sample_counts = plan.sample_counts();
+            sums.rounds = plan.rounds();
+            return checkpoint.keep(sums);
+        };
+        RenderReport report = render_adaptively(*engine, scene, record.settings, plan, sums.framebuffer, keep);
+        adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds()};
+        return report;
+    }
+    RenderReport report;
+    report.threads.resize(static_cast<std::size_t>(record.settings.threads));
+    for (const SampleRange& gap : gaps(sums.ranges, record.settings.end_sample)) {
+        RenderSettings settings = record.settings;
+        settings.first_sample = std::max(gap.first, settings.first_sample);
+        settings.end_sample = gap.end;
+        if (settings.first_sample >= settings.end_sample) continue;
+        if (!checkpoint.is_kept()) {
+            report.add(engine->render(scene, settings, sums.framebuffer));
+            sums.ranges = with_range(std::move(sums.ranges), {settings.first_sample, settings.end_sample});
+            continue;
+        }
+        report.add(render_in_pieces(*engine, scene, settings, sums.framebuffer, [&](const SampleRange& range) {
+            sums.ranges = with_range(std::move(sums.ranges), range);
+            return checkpoint.keep(sums);
+        }));
+        if (checkpoint.stopped_by() != 0) break;
+    }
+    return report;
+}
+
+template <class Scalar>
+Image render_scene(const Scene& scene, const RenderOptions& options, Checkpoint& checkpoint, RenderRecord& record) {
     Stopwatch watch;
     const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
     record.needs = compiled.needs;
     record.compile_s = watch.lap();
 
     const bool is_adaptive = record.target_error > 0;
-    Framebuffer framebuffer(compiled.width, compiled.height, FixedPoint::make(record.spp, compiled.max_radiance),
-                            is_adaptive ? Moments::Second : Moments::First);
-    const std::unique_ptr<Engine> engine = make_engine(record.engine, record.pool);
+    const ImageKey key = image_key(scene, record);
+    RenderSums sums = options.checkpoint.is_resumed
+                          ? load_checkpoint(options.checkpoint, key)
+                          : RenderSums{key,
+                                       {},
+                                       {},
+                                       0,
+                                       Framebuffer(compiled.width, compiled.height,
+                                                   FixedPoint::make(record.spp, compiled.max_radiance),
+                                                   is_adaptive ? Moments::Second : Moments::First)};
     Progress progress;
     record.settings.progress = &progress;
+    progress.paths = compiled.pixel_count() * sums.sample_count();
     {
-        const ProgressBar bar(progress, path_count(compiled, record.settings), {"M paths/s", 1e-6}, is_quiet);
-        record.report = is_adaptive ? render_adaptively(*engine, compiled, record.settings, record.target_error,
-                                                        framebuffer, record.adaptive)
-                                    : engine->render(compiled, record.settings, framebuffer);
+        const ProgressBar bar(progress, path_count(compiled, record.settings), {"M paths/s", 1e-6}, options.is_quiet);
+        record.report = render_missing(compiled, record, sums, record.adaptive, checkpoint);
     }
+    checkpoint.write(sums);
     record.settings.progress = nullptr;
-    record.hash = framebuffer.hash();
-    return is_adaptive ? framebuffer.image(record.adaptive.sample_counts)
-                       : framebuffer.image(record.settings.end_sample - record.settings.first_sample);
+    record.hash = sums.framebuffer.hash();
+    return is_adaptive ? sums.framebuffer.image(record.adaptive.sample_counts)
+                       : sums.framebuffer.image(sums.sample_count());
 }
 
-void render(const RenderOptions& options) {
+int render(const RenderOptions& options) {
     const Stopwatch total;
+    check(options.checkpoint);
     RenderRecord record;
     record.settings = render_settings(options);
     record.spp = options.spp;
@@ -234,8 +299,9 @@ void render(const RenderOptions& options) {
     record.height = scene.height;
     record.read_s = watch.seconds();
 
-    const Image image = record.precision == Precision::Double ? render_scene<double>(scene, options.is_quiet, record)
-                                                              : render_scene<float>(scene, options.is_quiet, record);
+    Checkpoint checkpoint(options.checkpoint);
+    const Image image = record.precision == Precision::Double ? render_scene<double>(scene, options, checkpoint, record)
+                                                              : render_scene<float>(scene, options, checkpoint, record);
     watch.lap();
     if (!options.output.empty()) write_image(options.output, image, image_attributes(record));
     record.write_s = watch.seconds();
@@ -244,16 +310,23 @@ void render(const RenderOptions& options) {
     if (!options.cost_image.empty()) write_cost_image(options, cost, record);
     if (!options.trace.empty()) write_trace(options.trace, trace, image_attributes(record));
 
-    if (options.is_quiet) return;
+    const int signal = checkpoint.stopped_by();
+    if (signal != 0)
+        fmt::print(stderr,
+                   "raypool: stopped; {} holds what is done: the same command with --resume goes on from there\n",
+                   options.checkpoint.file);
+    const int status = signal == 0 ? 0 : 128 + signal;
+    if (options.is_quiet) return status;
     print_summary(record);
     if (!options.output.empty()) fmt::print("{}\n", options.output);
     if (!options.cost_image.empty()) fmt::print("{}\n", options.cost_image);
     if (!options.trace.empty()) print_trace(options.trace, trace);
+    return status;
 }
 
 }  // namespace
 
-void add_render_command(CLI::App& app, int&) {
+void add_render_command(CLI::App& app, int& status) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a scene, print its figures and the hash of its sums");
     constexpr std::int64_t kMostSpp = std::numeric_limits<std::int32_t>::max();
@@ -288,6 +361,13 @@ void add_render_command(CLI::App& app, int&) {
                         "What a loop iteration renders: pixel, line or tile:N (default: line)");
     add_pool_options(*command, options->pool);
     command->add_flag("--count-work", options->count_work, "Count box and primitive tests (slower)");
+    command
+        ->add_option("--checkpoint", options->checkpoint.file,
+                     "Keep the exact sums in this file, every so often and at the end; `merge` adds such files up")
+        ->check(check_file_name);
+    command->add_option("--every", options->checkpoint.every_s, "Seconds between checkpoints (default: 60)")
+        ->check(CLI::Range(0.0, 1e9));
+    command->add_flag("--resume", options->checkpoint.is_resumed, "Go on from the checkpoint");
     command->add_option("--stats", options->stats, "Write all figures to this file, as JSON")->check(check_file_name);
     command
         ->add_option("--trace", options->trace,
@@ -300,7 +380,7 @@ void add_render_command(CLI::App& app, int&) {
     command->add_option("--cost", options->cost, "What is cost there: segments, tests or ns (default: tests)")
         ->check(CLI::IsMember({"segments", "tests", "ns"}));
     command->add_flag("--quiet", options->is_quiet, "Print nothing");
-    command->callback([options] { render(*options); });
+    command->callback([options, &status] { status = render(*options); });
 }
 
 }  // namespace raypool::cli

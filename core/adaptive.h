@@ -43,6 +43,13 @@ class AdaptivePlan {
     /// For an RMSE of at most `target_error` (> 0, radiance), with at most `most_samples` a pixel.
     AdaptivePlan(double target_error, std::int64_t most_samples, std::int64_t width, std::int64_t height);
 
+    /// Goes on from where another plan was: its sample counts and rounds.
+    AdaptivePlan(double target_error, std::int64_t most_samples, std::vector<std::int32_t> sample_counts, int rounds)
+        : target_error_(target_error),
+          most_samples_(most_samples),
+          counts_(std::move(sample_counts)),
+          rounds_(rounds) {}
+
     /// What to render next: passes of pixels that have as many samples each. None when all is done. The framebuffer
     /// must hold what was asked for before.
     std::vector<SamplePass> next(const Framebuffer& framebuffer);
@@ -73,12 +80,11 @@ struct AdaptiveReport {
     [[nodiscard]] double mean_samples() const;
 };
 
-/// Renders into a framebuffer that keeps second moments until its estimated RMSE is target_error, or every pixel has
-/// settings.end_sample samples. settings.first_sample must be 0.
-template <class Scalar>
+/// Renders into a framebuffer that keeps second moments until the plan is satisfied. After each round, go_on() says
+/// whether to; what it sees, the framebuffer and the plan, is what a render can go on from.
+template <class Scalar, class GoOn>
 RenderReport render_adaptively(const Engine& engine, const CompiledScene<Scalar>& scene, RenderSettings settings,
-                               double target_error, Framebuffer& framebuffer, AdaptiveReport& adaptive) {
-    AdaptivePlan plan(target_error, settings.end_sample, scene.width, scene.height);
+                               AdaptivePlan& plan, Framebuffer& framebuffer, GoOn go_on) {
     RenderReport report;
     for (std::vector<SamplePass> passes = plan.next(framebuffer); !passes.empty(); passes = plan.next(framebuffer)) {
         for (const SamplePass& pass : passes) {
@@ -87,7 +93,17 @@ RenderReport render_adaptively(const Engine& engine, const CompiledScene<Scalar>
             settings.pixels = &pass.pixels;
             report.add(engine.render(scene, settings, framebuffer));
         }
+        if (!go_on()) break;
     }
+    return report;
+}
+
+/// Until the estimated RMSE is target_error, or every pixel has settings.end_sample samples.
+template <class Scalar>
+RenderReport render_adaptively(const Engine& engine, const CompiledScene<Scalar>& scene, const RenderSettings& settings,
+                               double target_error, Framebuffer& framebuffer, AdaptiveReport& adaptive) {
+    AdaptivePlan plan(target_error, settings.end_sample, scene.width, scene.height);
+    const RenderReport report = render_adaptively(engine, scene, settings, plan, framebuffer, [] { return true; });
     adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds()};
     return report;
 }

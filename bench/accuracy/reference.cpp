@@ -12,7 +12,7 @@
 #include <xxhash.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/accuracy/scene_hash.h"
+#include "core/scene_hash.h"
 #include "core/error.h"
 #include "core/output_file.h"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/accuracy/scene_hash.h"
+#include "core/scene_hash.h"
 #include "core/error.h"
 #include "tests/core/scratch_folder.h"
 #include "tests/small_render.h"

@@ -1,7 +1,7 @@
 // Every struct is taken apart by a structured binding, so that a member that is added there does not compile here
 // until it is hashed too.
 
-#include "bench/accuracy/scene_hash.h"
+#include "core/scene_hash.h"
 
 #include <memory>
 #include <type_traits>
@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
-namespace raypool::accuracy {
+namespace raypool {
 
 namespace {
 
@@ -85,4 +85,4 @@ std::string scene_hash(const Scene& scene) {
     return hasher.digest();
 }
 
-}  // namespace raypool::accuracy
+}  // namespace raypool
