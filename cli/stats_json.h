@@ -27,6 +27,7 @@ struct RenderRecord {
     RenderReport report;
     double target_error = 0;  ///< 0: every pixel has the same number of samples
     AdaptiveReport adaptive;
+    double truncation_bound = 0;  ///< CompiledScene::truncation_bound() at the depth of the settings
     std::string hash;
     double read_s = 0;     ///< scene file to description
     double compile_s = 0;  ///< description to tables

@@ -13,6 +13,7 @@
 #include "core/compiled_scene.h"
 #include "core/framebuffer.h"
 #include "core/path.h"
+#include "core/random.h"
 
 namespace raypool {
 
@@ -45,7 +46,9 @@ struct RenderSettings {
     /// Only these pixels, in rising order (row * width + column); all where null.
     const std::vector<std::uint32_t>* pixels = nullptr;
     std::uint64_t seed = 0;
+    Sampler sampler = Sampler::Independent;
     int split_depth = 0;  ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits
+    bool roulette = false;  ///< end paths that carry little by chance, without bias (core/shade.h)
     int threads = 1;
     LoopSchedule schedule;
     Grain grain;

@@ -27,7 +27,9 @@ std::size_t stack_bytes_per_bounce() {
     inside_sphere.spheres.emplace_back().radius = 10;
     const CompiledScene<Scalar> scene = compile<Scalar>(inside_sphere);
     const auto deepest = [&](std::int32_t depth) {
-        Tracer<needs, Scalar, Work, splitting> tracer(scene, random_seed(0), depth, 0, FixedPoint::make(1, 1));
+        RenderSettings settings;
+        settings.depth = depth;
+        Tracer<needs, Scalar, Work, splitting> tracer(scene, settings, FixedPoint::make(1, 1));
         tracer.template sample<Form::Recursive>(0, 0, 0);
         return tracer.deepest_stack();
     };
@@ -65,8 +67,7 @@ RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& se
     }
     const WorkItems items(scene.width, scene.height, settings.grain);
     return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
-        Tracer<needs, Scalar, Work, splitting> tracer(scene, random_seed(settings.seed), settings.depth,
-                                                      settings.split_depth, framebuffer.fixed_point());
+        Tracer<needs, Scalar, Work, splitting> tracer(scene, settings, framebuffer.fixed_point());
         ProgressBatch progress(settings.progress);
         ItemLog log(settings, omp_get_thread_num());
         PixelCost cost(settings.cost_image);

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/framebuffer.h"
+#include "core/engine.h"
 #include "core/shade.h"
 #include "core/traverse.h"
 #include "recursive/stack.h"
@@ -34,9 +34,14 @@ enum class Next : std::uint8_t { End, OnePath, TwoPaths };
 template <SceneNeeds needs, class Scalar, class Work, Splitting splitting>
 class Tracer {
   public:
-    Tracer(const CompiledScene<Scalar>& scene, RandomSeed seed, std::int32_t depth, int split_depth,
-           const FixedPoint& fixed)
-        : scene_(scene), seed_(seed), depth_(depth), split_depth_(split_depth), converter_(fixed) {}
+    /// Of the settings, it follows those of paths: depth, seed, sampler, split_depth, roulette.
+    Tracer(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const FixedPoint& fixed)
+        : scene_(scene),
+          seed_(random_seed(settings.seed, settings.sampler)),
+          depth_(settings.depth),
+          split_depth_(settings.split_depth),
+          roulette_(settings.roulette),
+          converter_(fixed) {}
 
     /// One sample, whole.
     template <Form form>
@@ -100,8 +105,9 @@ class Tracer {
         if (hit.primitive_id == kNoPrimitive) {
             return finish(path.throughput.cwiseProduct(sky_radiance<Scalar>(scene_.sky, path.ray.direction)));
         }
-        const Scattered<Scalar> out = scatter<needs, Scalar, splitting>(
-            scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key, path.step, seed_, split_depth_);
+        const Scattered<Scalar> out =
+            scatter<needs, Scalar, splitting>(scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key,
+                                              path.step, seed_, split_depth_, roulette_);
         if (out.is_emitter) return finish(out.throughput);
         path.ray.origin = out.origin;
         path.ray.direction = out.direction;
@@ -133,6 +139,7 @@ class Tracer {
     RandomSeed seed_;
     std::int32_t depth_;
     int split_depth_;
+    bool roulette_;
     std::int64_t segments_ = 0;
     FixedRgb sum_{};
     SampleConverter converter_;

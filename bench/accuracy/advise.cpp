@@ -64,6 +64,9 @@ std::vector<Change> changes(bool has_glass) {
     for (const int depth : kDepths)
         all.push_back({fmt::format("depth {} instead of {}", depth, kDeep), in_float,
                        with(in_float, [=](auto& c) { c.depth = depth; }), true});
+    all.push_back({"Sobol points instead of independent ones", in_float,
+                   with(in_float, [](auto& c) { c.sampler = Sampler::Sobol; }), false});
+    all.push_back({"roulette", in_float, with(in_float, [](auto& c) { c.roulette = true; }), false});
     for (int split = 1; has_glass && split <= 2; ++split)
         all.push_back({fmt::format("both branches of the first {} hit{} on glass", split, split == 1 ? "" : "s"),
                        in_float, with(in_float, [=](auto& c) { c.split_depth = split; }), false});
@@ -77,7 +80,7 @@ class Piloting {
 
     /// `images` receives the images, where it is wanted.
     Pilot run(const Configuration& configuration, std::int64_t spp, std::vector<Values>* images = nullptr) const {
-        Pilot pilot{configuration, spp, {}, {}, -1, {}};
+        Pilot pilot{configuration, spp, {}, {}, slope(configuration, spp), {}};
         std::vector<Values> made = render(configuration, spp, pilot.seconds);
         pilot.mse = variances(made);
         if (images != nullptr) *images = std::move(made);
@@ -96,6 +99,17 @@ class Piloting {
             images.push_back(std::move(made.values));
         }
         return images;
+    }
+
+    /// Of the squared error of Sobol points between a quarter of the samples and all: what a pilot of few samples
+    /// promises beyond them is not believed past a slope of -1.25.
+    [[nodiscard]] double slope(const Configuration& configuration, std::int64_t spp) const {
+        if (configuration.sampler == Sampler::Independent || spp < 4) return -1;
+        std::vector<double> unused;
+        const double x[] = {static_cast<double>(spp / 4), static_cast<double>(spp)};
+        const double y[] = {mean(variances(render(configuration, spp / 4, unused))),
+                            mean(variances(render(configuration, spp, unused)))};
+        return y[0] > 0 && y[1] > 0 ? std::clamp(log_log_slope(x, y), -1.25, -1.0) : -1;
     }
 
     const SceneInBoth& scene_;
@@ -220,9 +234,12 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
                 const Configuration& after = all[i].after;
                 Configuration& c = combined.configuration;
                 if (after.engine != EngineKind::Pool) c.engine = after.engine;
+                if (after.sampler != Sampler::Independent) c.sampler = after.sampler;
+                if (after.roulette) c.roulette = true;
                 if (after.split_depth != 0) c.split_depth = after.split_depth;
                 if (after.depth != kDeep) c.depth = after.depth;
                 if (all[i].has_bias) combined.bias = pilots[i].bias;
+                if (after.sampler != Sampler::Independent) combined.slope = pilots[i].slope;
                 const double noise = factor(pilots[i], [](const Pilot& p) { return mean(p.mse); });
                 const double time = factor(pilots[i], [](const Pilot& p) { return median(p.seconds); });
                 for (double& m : combined.mse) m *= noise;
@@ -232,6 +249,8 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
         }
     };
     combine_all([](const Configuration& c) { return c.engine != EngineKind::Pool; });
+    combine_all([](const Configuration& c) { return c.sampler != Sampler::Independent; });
+    combine_all([](const Configuration& c) { return c.roulette; });
     combine_all([](const Configuration& c) { return c.split_depth != 0; });
     combine_all([](const Configuration& c) { return c.depth != kDeep; });
 
@@ -251,6 +270,7 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
     const double growth = static_cast<double>(tables.pixel_count()) / static_cast<double>(pilot_tables.pixel_count());
     for (const Offer& promising : foretold) {
         const double per_sample = promising.pilot.seconds_of(1) * growth * kSeeds;
+        // Powers of two, at which Sobol points are what they are.
         std::int64_t spp = 1;
         while (2 * spp <= promising.spp && 2 * static_cast<double>(spp) * per_sample <= kSecondsPerOffer) spp *= 2;
         Pilot pilot = closer.run(promising.pilot.configuration, spp);

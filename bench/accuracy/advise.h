@@ -5,9 +5,9 @@
 /// promising combinations are chosen, and each is rendered at the size that is asked for; what they then predict is the
 /// advice. An error is the root mean square over channels and pixels against the converged image.
 ///
-/// Noise falls with the root of the samples. Bias is taken from pairs of images that share random numbers. Only float
-/// and a limit of depth have any: split paths have the right expectation by construction (and by test), so theirs is
-/// measured but not charged.
+/// Noise falls with the root of the samples; of Sobol points with the slope that was measured. Bias is taken from pairs
+/// of images that share random numbers. Only float and a limit of depth have any: Sobol points, roulette and split
+/// paths have the right expectation by construction (and by test), so theirs is measured but not charged.
 #pragma once
 
 #include <cstdint>

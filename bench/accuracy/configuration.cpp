@@ -26,15 +26,18 @@ double max_radiance(const Configuration& configuration, const SceneInBoth& scene
 std::string to_string(const Configuration& c) {
     std::string text = fmt::format("{} {}", c.precision == Precision::Float ? "float" : "double",
                                    c.engine == EngineKind::Pool ? "pool" : "recursion");
+    if (c.sampler == Sampler::Sobol) text += ", Sobol";
+    if (c.roulette) text += ", roulette";
     if (c.depth != Configuration{}.depth) text += fmt::format(", depth {}", c.depth);
     if (c.split_depth != 0) text += fmt::format(", split {}", c.split_depth);
     return text;
 }
 
 std::string render_flags(const Configuration& c) {
-    return fmt::format("--engine {} --precision {} --depth {}{}",
+    return fmt::format("--engine {} --precision {} --sampler {}{} --depth {}{}",
                        c.engine == EngineKind::Pool ? "wavefront" : "recursive",
-                       c.precision == Precision::Float ? "float" : "double", c.depth,
+                       c.precision == Precision::Float ? "float" : "double",
+                       c.sampler == Sampler::Sobol ? "sobol" : "independent", c.roulette ? " --roulette" : "", c.depth,
                        c.split_depth == 0 ? "" : fmt::format(" --split-depth {}", c.split_depth));
 }
 
@@ -47,6 +50,8 @@ RenderReport render_into(Framebuffer& framebuffer, const Configuration& configur
     settings.threads = taken.threads;
     settings.depth = configuration.depth;
     settings.split_depth = configuration.split_depth;
+    settings.sampler = configuration.sampler;
+    settings.roulette = configuration.roulette;
     settings.schedule.kind = LoopSchedule::Kind::Dynamic;
     if (configuration.engine == EngineKind::Pool)
         return render_with(wavefront::WavefrontEngine(wavefront::PoolSettings{}), configuration, scene, settings,

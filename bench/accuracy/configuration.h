@@ -22,6 +22,8 @@ inline constexpr std::int32_t kDeep = 1000;
 struct Configuration {
     EngineKind engine = EngineKind::Pool;
     Precision precision = Precision::Float;
+    Sampler sampler = Sampler::Independent;
+    bool roulette = false;
     std::int32_t depth = 50;
     int split_depth = 0;
 

@@ -40,12 +40,22 @@ std::vector<Configuration> configurations(std::int64_t depth, bool has_glass) {
     const auto recursion = [](Configuration& c) { c.engine = EngineKind::Recursive; };
     const auto in_double = [](Configuration& c) { c.precision = Precision::Double; };
     const auto shallow = [](Configuration& c) { c.depth = 5; };
+    const auto sobol = [](Configuration& c) { c.sampler = Sampler::Sobol; };
+    const auto roulette = [](Configuration& c) { c.roulette = true; };
+    const auto deep = [](Configuration& c) { c.depth = accuracy::kDeep; };
     const auto split = [](Configuration& c) { c.split_depth = 1; };
     add(recursion);
     add(in_double);
     add(recursion, in_double);
+    add(sobol);
+    add(roulette);
     add(shallow);
-    if (has_glass) add(split);
+    add(sobol, roulette);
+    add(sobol, roulette, deep);
+    add(sobol, roulette, recursion);
+    if (!has_glass) return all;
+    add(split);
+    add(sobol, roulette, split);
     return all;
 }
 
@@ -64,6 +74,8 @@ Row start_of_row(const char* kind, const accuracy::SceneInBoth& scene, const Con
             to_string(c),
             c.engine == EngineKind::Pool ? "pool" : "recursion",
             c.precision == Precision::Float ? "float" : "double",
+            c.sampler == Sampler::Sobol ? "Sobol" : "independent",
+            c.roulette ? "on" : "off",
             c.depth,
             c.split_depth,
             threads,
@@ -180,6 +192,8 @@ class SpeedAccuracy : public Study {
                 {"configuration", ColumnType::Text, "the next columns in words"},
                 {"engine", ColumnType::Text, "who rendered"},
                 {"precision", ColumnType::Text, "numbers of the kernels"},
+                {"sampler", ColumnType::Text, "how random numbers are made"},
+                {"roulette", ColumnType::Text, "on: paths that carry little end by chance"},
                 {"depth", ColumnType::Count, "most segments of a path"},
                 {"split", ColumnType::Count, "hits on glass that follow both branches"},
                 {"threads", ColumnType::Count, "OpenMP threads"},

@@ -137,6 +137,10 @@ std::vector<Question> questions(std::int64_t depth) {
          base, changed([](Configuration& c) { c.engine = accuracy::EngineKind::Recursive; })});
     all.push_back({"float reaches the error of double in less time", base,
                    changed([](Configuration& c) { c.precision = accuracy::Precision::Double; })});
+    all.push_back({"Sobol points reach the error of independent ones in less time",
+                   changed([](Configuration& c) { c.sampler = Sampler::Sobol; }), base});
+    all.push_back({"Russian roulette reaches the error of whole paths in less time",
+                   changed([](Configuration& c) { c.roulette = true; }), base});
     all.push_back({"a depth of 5 reaches less error in the time of the whole depth",
                    changed([](Configuration& c) { c.depth = 5; }), base});
     all.push_back({"to follow both branches of the first hit on glass reaches an error in less time",
