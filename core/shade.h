@@ -241,10 +241,12 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
     if (roulette) [[unlikely]] {
         const Mask<Real> is_played =
             from_uint32<Real>(path_step::bounce<Uint32<Real>>(step)) >= Real(static_cast<S>(kHitsBeforeRoulette - 1));
-        out.is_alive = out.is_alive && survives_roulette<Real>(out.throughput, random[3], is_played && !out.is_emitter);
+        const Mask<Real> survives = survives_roulette<Real>(out.throughput, random[3], is_played && !out.is_emitter);
+        out.is_alive = out.is_alive && survives;
         if constexpr (splitting == Splitting::On) {
-            out.is_reflected_alive =
-                out.is_reflected_alive && survives_roulette<Real>(out.reflected_throughput, random[3], is_played);
+            const Mask<Real> reflected_survives =
+                survives_roulette<Real>(out.reflected_throughput, random[3], is_played);
+            out.is_reflected_alive = out.is_reflected_alive && reflected_survives;
         }
     }
     return out;

@@ -1,6 +1,7 @@
 #include "bench/accuracy/advise.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -187,7 +188,12 @@ std::optional<std::int64_t> samples_for(const Pilot& pilot, const Target& target
         samples = std::min(samples, static_cast<double>(kMostSpp));
     }
     if (!(samples <= static_cast<double>(kMostSpp))) return {};
-    return std::max<std::int64_t>(1, static_cast<std::int64_t>(samples));
+    const auto spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(samples));
+    if (pilot.configuration.sampler == Sampler::Independent) return spp;
+    // Between powers of two Sobol points are worse than a line through those foretells.
+    const auto power = static_cast<std::uint64_t>(spp);
+    const auto rounded = static_cast<std::int64_t>(target.error ? std::bit_ceil(power) : std::bit_floor(power));
+    return rounded <= kMostSpp ? std::optional(rounded) : std::nullopt;
 }
 
 std::int64_t most_pilots() {
