@@ -175,12 +175,16 @@ double Pilot::seconds_of(double samples) const {
     return median(seconds) * samples / static_cast<double>(spp);
 }
 
+/// The slope of Sobol samples is a measured one, and what is foretold by it less sure than by the -1 of independent ones.
+constexpr double kSobolMargin = 1.25;
+
 std::optional<std::int64_t> samples_for(const Pilot& pilot, const Target& target) {
     double samples = 0;
     if (target.error) {
         const double left = *target.error * *target.error - pilot.bias_squared();
         if (left <= 0) return {};
-        const double most = mean(pilot.mse) * (1 + spread(pilot.mse));
+        double most = mean(pilot.mse) * (1 + spread(pilot.mse));
+        if (pilot.configuration.sampler == Sampler::Sobol) most *= kSobolMargin;
         samples = std::ceil(static_cast<double>(pilot.spp) * std::pow(left / most, 1 / pilot.slope));
     } else {
         samples = std::floor(kTimeMargin * *target.seconds / pilot.seconds_of(1));
