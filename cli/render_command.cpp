@@ -40,6 +40,8 @@ struct RenderOptions {
     std::int64_t depth = 50;
     int split_depth = 0;
     std::string seed = "0";
+    std::string sampler = "independent";
+    bool roulette = false;
     std::string samples;
     int threads = 0;  ///< 0: OpenMP's
     std::string schedule;
@@ -86,6 +88,8 @@ RenderSettings render_settings(const RenderOptions& options) {
     settings.depth = static_cast<std::int32_t>(options.depth);
     settings.split_depth = options.split_depth;
     settings.seed = parse_seed(options.seed);
+    settings.sampler = parse_sampler(options.sampler);
+    settings.roulette = options.roulette;
     settings.threads = thread_count(options.threads);
     settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
     settings.grain = parse_grain(options.grain);
@@ -131,9 +135,10 @@ void print_summary(const RenderRecord& record) {
     const RenderReport& report = record.report;
     const auto paths = static_cast<double>(report.paths());
     const auto segments = static_cast<double>(report.segments());
-    fmt::print("{}: {} x {}, samples {} to {} of {}, depth {}, seed {}, {}\n", record.scene_name, record.width,
-               record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth, settings.seed,
-               record.precision == Precision::Float ? "float" : "double");
+    fmt::print("{}: {} x {}, samples {} to {} of {}, depth {}{}, {}seed {}, {}\n", record.scene_name, record.width,
+               record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth,
+               settings.roulette ? " and roulette" : "", settings.sampler == Sampler::Sobol ? "sobol, " : "",
+               settings.seed, record.precision == Precision::Float ? "float" : "double");
     fmt::print("{} engine: {} thread{}, grain {}, schedule {}\n", record.engine, settings.threads,
                settings.threads == 1 ? "" : "s", to_string(settings.grain), to_string(settings.schedule));
     fmt::print("{:.3f} M paths, {:.3f} M segments ({:.3f} a path) in {:.3f} s: {:.3f} M paths/s, {:.1f} ns a segment\n",
@@ -146,6 +151,8 @@ void print_summary(const RenderRecord& record) {
     if (report.pool_bytes > 0)
         fmt::print("ray record of {} bytes; pools at most {:.2f} MB\n", report.record_bytes,
                    static_cast<double>(report.pool_bytes) / (1024 * 1024));
+    if (record.truncation_bound > 0)
+        fmt::print("depth {} cuts off a radiance of at most {:.3g} a pixel\n", settings.depth, record.truncation_bound);
     if (report.audit.non_finite > 0 || report.audit.clamped > 0)
         fmt::print("bad samples: {} not finite and left out, {} channels cut (radiance {:.6g} in all)\n",
                    report.audit.non_finite, report.audit.clamped, report.audit.clamped_energy);
@@ -165,6 +172,7 @@ Image render_scene(const Scene& scene, bool is_quiet, RenderRecord& record) {
     Stopwatch watch;
     const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
     record.needs = compiled.needs;
+    record.truncation_bound = compiled.truncation_bound(record.settings.depth);
     record.compile_s = watch.lap();
 
     Framebuffer framebuffer(compiled.width, compiled.height, FixedPoint::make(record.spp, compiled.max_radiance));
@@ -254,6 +262,11 @@ void add_render_command(CLI::App& app, int&) {
                      "At so many first hits on glass follow both the reflected and the refracted ray (default: 0)")
         ->check(CLI::Range(0, path_step::kMostSplits));
     command->add_option("--seed", options->seed, "Seed of all random numbers (default: 0)");
+    command
+        ->add_option("--sampler", options->sampler,
+                     "How numbers lie in a pixel: independent or sobol (default: independent)")
+        ->check(CLI::IsMember({"independent", "sobol"}));
+    command->add_flag("--roulette", options->roulette, "End paths that carry little by chance, without bias");
     command->add_option("--precision", options->precision, "Numbers of the kernels (default: float)")
         ->check(CLI::IsMember({"float", "double"}));
     command->add_option("--threads", options->threads, "OpenMP threads (default: OMP_NUM_THREADS)")

@@ -24,6 +24,7 @@ struct RenderRecord {
     RenderSettings settings;
     wavefront::PoolSettings pool;  ///< of the wavefront engine
     RenderReport report;
+    double truncation_bound = 0;  ///< CompiledScene::truncation_bound() at the depth of the settings
     std::string hash;
     double read_s = 0;     ///< scene file to description
     double compile_s = 0;  ///< description to tables

@@ -13,6 +13,7 @@
 #include "core/compiled_scene.h"
 #include "core/framebuffer.h"
 #include "core/path.h"
+#include "core/random.h"
 
 namespace raypool {
 
@@ -43,7 +44,9 @@ struct RenderSettings {
     std::int64_t end_sample = 1;    ///< at most 2^31 - 1
     std::int32_t depth = 50;        ///< most segments of a path, up to path_step::kMostBounces; 0 makes a black image
     std::uint64_t seed = 0;
+    Sampler sampler = Sampler::Independent;
     int split_depth = 0;  ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits
+    bool roulette = false;  ///< end paths that carry little by chance, without bias (core/shade.h)
     int threads = 1;
     LoopSchedule schedule;
     Grain grain;

@@ -27,7 +27,9 @@ std::size_t stack_bytes_per_bounce() {
     inside_sphere.spheres.emplace_back().radius = 10;
     const CompiledScene<Scalar> scene = compile<Scalar>(inside_sphere);
     const auto deepest = [&](std::int32_t depth) {
-        Tracer<needs, Scalar, Work, splitting> tracer(scene, random_seed(0), depth, 0, FixedPoint::make(1, 1));
+        RenderSettings settings;
+        settings.depth = depth;
+        Tracer<needs, Scalar, Work, splitting> tracer(scene, settings, FixedPoint::make(1, 1));
         FixedRgb sum{};
         tracer.template sample<Form::Recursive>(0, 0, 0, sum);
         return tracer.deepest_stack();
@@ -58,15 +60,15 @@ void check_stack(std::int32_t depth, int threads) {
                     depth, wanted, per_bounce, held == 0 ? 0 : held - 1, wanted * 1024, wanted));
 }
 
-template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting = Splitting::Off>
+template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting = Splitting::Off,
+          Rules rules = Rules::Any>
 RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {
     if constexpr (form == Form::Recursive) {
         check_stack<needs, Scalar, Work, splitting>(settings.depth, settings.threads);
     }
     const WorkItems items(scene.width, scene.height, settings.grain);
     return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
-        Tracer<needs, Scalar, Work, splitting> tracer(scene, random_seed(settings.seed), settings.depth,
-                                                      settings.split_depth, framebuffer.fixed_point());
+        Tracer<needs, Scalar, Work, splitting, rules> tracer(scene, settings, framebuffer.fixed_point());
         ProgressBatch progress(settings.progress);
         ItemLog log(settings, omp_get_thread_num());
         PixelCost cost(settings.cost_image);
@@ -105,7 +107,9 @@ RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& se
     if (settings.count_work || counts_for_image)
         return render<form, kEverything, Scalar, WorkCount>(scene, settings, framebuffer);
     return dispatch_needs(scene.needs, [&]<SceneNeeds needs>() {
-        return render<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);
+        return are_plain(settings) ? render<form, needs, Scalar, NoWorkCount, Splitting::Off, Rules::Plain>(
+                                         scene, settings, framebuffer)
+                                   : render<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);
     });
 }
 

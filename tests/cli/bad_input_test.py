@@ -125,6 +125,7 @@ class BadOption(CommandTest):
                                "static,1,2", "Static"),
                 "--grain": ("row", "tile", "tile:", "tile:0", "tile:-8", "tile:65537", "pixel:1", "tile:8x8"),
                 "--precision": ("half", "long double"),
+                "--sampler": ("halton", "Sobol", ""),
                 "--engine": ("quick", ""),
                 "--output": ("out", "out.gif", "out.png.txt", ".png/", ""),
                 "--stats": ("",),
