@@ -339,10 +339,11 @@ class Diff(CommandTest):
             for name, seed in (("a", 0), ("again", 0), ("b", 1)):
                 self.run_well("render", "scene.json", "--spp", 1, "--seed", seed, "-o", f"{name}.{kind}")
             same = self.run_well("diff", f"a.{kind}", f"again.{kind}")
-            self.assertRegex(same.stdout, r"pixels that differ 0 of 48\nRMSE +0\n")
+            self.assertRegex(same.stdout, r"pixels that differ 0 of 48\nMSE +0\nRMSE +0\n")
             other = self.run_command("diff", f"a.{kind}", f"b.{kind}", "-o", "where.png")
             self.assertEqual((other.returncode, other.stderr), (1, ""))
             self.assertRegex(other.stdout, r"pixels that differ [1-9]\d* of 48\n")
+            self.assertRegex(other.stdout, r"\ntile bias +z = -?\d+\.\d\d in columns 0 to 7, lines 0 to 5, ")
             self.assertTrue(other.stdout.endswith("\nwhere.png\n"))
         self.run_well("diff", "a.exr", "a.pfm")
 
