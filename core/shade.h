@@ -244,9 +244,8 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
         const Mask<Real> survives = survives_roulette<Real>(out.throughput, random[3], is_played && !out.is_emitter);
         out.is_alive = out.is_alive && survives;
         if constexpr (splitting == Splitting::On) {
-            const Mask<Real> reflected_survives =
-                survives_roulette<Real>(out.reflected_throughput, random[3], is_played);
-            out.is_reflected_alive = out.is_reflected_alive && reflected_survives;
+            const Mask<Real> survives_too = survives_roulette<Real>(out.reflected_throughput, random[3], is_played);
+            out.is_reflected_alive = out.is_reflected_alive && survives_too;
         }
     }
     return out;

@@ -18,7 +18,7 @@
 namespace raypool::recursive {
 
 /// Bytes of stack that one bounce takes, measured: a ray inside a white sphere bounces for ever.
-template <SceneNeeds needs, class Scalar, class Work, Splitting splitting>
+template <SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules>
 std::size_t stack_bytes_per_bounce() {
     Scene inside_sphere;
     inside_sphere.width = inside_sphere.height = 1;
@@ -29,7 +29,7 @@ std::size_t stack_bytes_per_bounce() {
     const auto deepest = [&](std::int32_t depth) {
         RenderSettings settings;
         settings.depth = depth;
-        Tracer<needs, Scalar, Work, splitting> tracer(scene, settings, FixedPoint::make(1, 1));
+        Tracer<needs, Scalar, Work, splitting, rules> tracer(scene, settings, FixedPoint::make(1, 1));
         tracer.template sample<Form::Recursive>(0, 0, 0);
         return tracer.deepest_stack();
     };
@@ -41,13 +41,13 @@ std::size_t stack_bytes_per_bounce() {
 inline constexpr std::size_t kStackReserve = 64 * 1024;
 
 /// Refuses a depth that the stack of one of the `threads` threads could not hold.
-template <SceneNeeds needs, class Scalar, class Work, Splitting splitting>
+template <SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules>
 void check_stack(std::int32_t depth, int threads) {
     std::size_t left = std::numeric_limits<std::size_t>::max();
 #pragma omp parallel num_threads(threads) reduction(min : left)
     left = stack_bytes_left();
 
-    const std::size_t per_bounce = stack_bytes_per_bounce<needs, Scalar, Work, splitting>();
+    const std::size_t per_bounce = stack_bytes_per_bounce<needs, Scalar, Work, splitting, rules>();
     const std::size_t held = left < kStackReserve ? 0 : (left - kStackReserve) / per_bounce;
     if (depth == 0 || static_cast<std::size_t>(depth) < held) return;
     constexpr std::size_t kMegabyte = 1024 * 1024;
@@ -59,15 +59,16 @@ void check_stack(std::int32_t depth, int threads) {
                     depth, wanted, per_bounce, held == 0 ? 0 : held - 1, wanted * 1024, wanted));
 }
 
-template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting = Splitting::Off>
+template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting = Splitting::Off,
+          Rules rules = Rules::Any>
 RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {
     check_settings(settings, framebuffer);
     if constexpr (form == Form::Recursive) {
-        check_stack<needs, Scalar, Work, splitting>(settings.depth, settings.threads);
+        check_stack<needs, Scalar, Work, splitting, rules>(settings.depth, settings.threads);
     }
     const WorkItems items(scene.width, scene.height, settings.grain);
     return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
-        Tracer<needs, Scalar, Work, splitting> tracer(scene, settings, framebuffer.fixed_point());
+        Tracer<needs, Scalar, Work, splitting, rules> tracer(scene, settings, framebuffer.fixed_point());
         ProgressBatch progress(settings.progress);
         ItemLog log(settings, omp_get_thread_num());
         PixelCost cost(settings.cost_image);
@@ -115,7 +116,9 @@ RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& se
     if (settings.count_work || counts_for_image)
         return render<form, kEverything, Scalar, WorkCount>(scene, settings, framebuffer);
     return dispatch_needs(scene.needs, [&]<SceneNeeds needs>() {
-        return render<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);
+        return are_plain(settings) ? render<form, needs, Scalar, NoWorkCount, Splitting::Off, Rules::Plain>(
+                                         scene, settings, framebuffer)
+                                   : render<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);
     });
 }
 

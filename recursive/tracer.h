@@ -30,8 +30,16 @@ struct Path {
 /// What follows a segment.
 enum class Next : std::uint8_t { End, OnePath, TwoPaths };
 
+/// What is decided when compiling: independent numbers and no roulette (whose branches and registers this engine would
+/// feel, and the paper's tracer has not), or whatever the settings say.
+enum class Rules : bool { Plain, Any };
+
+constexpr bool are_plain(const RenderSettings& settings) {
+    return settings.sampler == Sampler::Independent && !settings.roulette;
+}
+
 /// Traces paths for one thread. `Work` counts box and primitive tests, or nothing.
-template <SceneNeeds needs, class Scalar, class Work, Splitting splitting>
+template <SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules = Rules::Any>
 class Tracer {
   public:
     /// Of the settings, it follows those of paths: depth, seed, sampler, split_depth, roulette.
@@ -49,7 +57,7 @@ class Tracer {
         const PathKey<Scalar> key{static_cast<std::uint32_t>(y * scene_.width + x),
                                   static_cast<std::uint32_t>(sample_id)};
         const Ray<Scalar> ray = camera_ray<needs, Scalar>(scene_.camera, static_cast<Scalar>(x), static_cast<Scalar>(y),
-                                                          key.pixel, key.sample, seed_);
+                                                          key.pixel, key.sample, seed());
         sum_ = {};
         const Path<Scalar> path{ray, vec3<Scalar>(1, 1, 1), key, kNoPrimitive, 0};
         if constexpr (form == Form::Recursive) {
@@ -107,7 +115,7 @@ class Tracer {
         }
         const Scattered<Scalar> out =
             scatter<needs, Scalar, splitting>(scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key,
-                                              path.step, seed_, split_depth_, roulette_);
+                                              path.step, seed(), split_depth_, rules == Rules::Any && roulette_);
         if (out.is_emitter) return finish(out.throughput);
         path.ray.origin = out.origin;
         path.ray.direction = out.direction;
@@ -127,6 +135,11 @@ class Tracer {
             }
         }
         return out.is_alive ? Next::OnePath : Next::End;
+    }
+
+    /// The sampler of plain rules is known to the compiler.
+    [[nodiscard]] RandomSeed seed() const {
+        return {seed_.low, seed_.high, rules == Rules::Plain ? Sampler::Independent : seed_.sampler};
     }
 
     Next finish(const Vec3<Scalar>& radiance) {

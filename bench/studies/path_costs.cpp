@@ -55,11 +55,11 @@ LineLog record_line(const CompiledScene<float>& scene, const RenderSettings& set
     return line;
 }
 
-/// Processor time of every `step`th line.
+/// Processor time of every `step`th line, by plain rules, as the engine runs them.
 template <SceneNeeds needs>
 std::vector<double> time_lines(const CompiledScene<float>& scene, const RenderSettings& settings, std::int64_t step) {
     const FlushDenormals flush;
-    recursive::Tracer<needs, float, NoWorkCount, Splitting::Off> tracer(
+    recursive::Tracer<needs, float, NoWorkCount, Splitting::Off, recursive::Rules::Plain> tracer(
         scene, settings, FixedPoint::make(settings.end_sample, scene.max_radiance));
     std::vector<double> seconds;
     for (std::int64_t y = 0; y < scene.height; y += step) {

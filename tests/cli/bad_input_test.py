@@ -126,6 +126,7 @@ class BadOption(CommandTest):
                 "--grain": ("row", "tile", "tile:", "tile:0", "tile:-8", "tile:65537", "pixel:1", "tile:8x8"),
                 "--target-error": ("0", "-1", "nan", "small", ""),
                 "--precision": ("half", "long double"),
+                "--sampler": ("halton", "Sobol", ""),
                 "--engine": ("quick", ""),
                 "--output": ("out", "out.gif", "out.png.txt", ".png/", ""),
                 "--stats": ("",),

@@ -88,6 +88,28 @@ class Render(CommandTest):
         self.assertEqual((self.folder / "out.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(self.run_well("render", "scene.json", "--spp", 2, "--quiet").stdout, "")
 
+    def test_sampler_and_roulette_change_the_image_and_are_recorded(self):
+        hashes = set()
+        for sampler in ("independent", "sobol"):
+            for roulette in ((), ("--roulette",)):
+                images = set()
+                for engine in ("recursive", "iterative", "wavefront"):
+                    stats = self.stats("--spp", 32, "--sampler", sampler, *roulette, "--engine", engine)
+                    images.add(stats["hash"])
+                    self.assertEqual(stats["settings"]["sampler"], sampler)
+                    self.assertEqual(stats["settings"]["roulette"], bool(roulette))
+                self.assertEqual(len(images), 1)
+                hashes |= images
+        self.assertEqual(len(hashes), 4)
+        summary = self.run_well("render", "scene.json", "--spp", 1, "--sampler", "sobol", "--roulette").stdout
+        self.assertIn("depth 50 and roulette, sobol, seed 0", summary)
+
+    def test_says_what_the_depth_cuts_off_at_most(self):
+        stats = self.stats("--spp", 1, "--depth", 3)
+        summary = self.run_well("render", "scene.json", "--spp", 1, "--depth", 3).stdout
+        self.assertGreater(stats["truncation_bound"], 0)
+        self.assertIn(f"depth 3 cuts off a radiance of at most {stats['truncation_bound']:.3g} a pixel\n", summary)
+
     def test_needs_neither_a_scene_nor_an_output(self):
         result = self.run_well("render", "--width", 16, "--spp", 1)
         self.assertTrue(result.stdout.startswith("paper: 16 x 9"))
@@ -336,6 +358,7 @@ class Diff(CommandTest):
             other = self.run_command("diff", f"a.{kind}", f"b.{kind}", "-o", "where.png")
             self.assertEqual((other.returncode, other.stderr), (1, ""))
             self.assertRegex(other.stdout, r"pixels that differ [1-9]\d* of 48\n")
+            self.assertRegex(other.stdout, r"\ntile bias +z = -?\d+\.\d\d in columns 0 to 7, lines 0 to 5, ")
             self.assertTrue(other.stdout.endswith("\nwhere.png\n"))
         self.run_well("diff", "a.exr", "a.pfm")
 
