@@ -35,10 +35,20 @@ void check(const CheckpointOptions& options) {
             fmt::format("{}: is there already; add --resume to go on from it, or remove it", options.file));
 }
 
-RenderSums load_checkpoint(const CheckpointOptions& options, const ImageKey& key) {
+RenderSums load_checkpoint(const CheckpointOptions& options, const RenderSums& wanted, const SampleRange& samples) {
     RenderSums sums = read_sums(options.file);
-    if (const std::string differs = difference(sums.key, key); !differs.empty())
-        throw InputError(fmt::format("--resume: {} is of a render with {}", options.file, differs));
+    try {
+        check_same_render(sums, wanted);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("--resume: {}: {}", options.file, error.what()));
+    }
+    for (const SampleRange& range : sums.ranges)
+        if (range.first < samples.first || range.end > samples.end)
+            throw InputError(fmt::format("--resume: {} holds samples {} to {}, which are not of --samples {}:{}",
+                                         options.file, range.first, range.end, samples.first, samples.end));
+    for (const std::int32_t count : sums.sample_counts)
+        if (count > samples.end || (sums.rounds > 0 && count < 2))
+            throw InputError(fmt::format("--resume: {}: a pixel has {} samples", options.file, count));
     return sums;
 }
 

@@ -17,8 +17,9 @@ struct CheckpointOptions {
 /// Refuses (InputError) options that make no sense, and a checkpoint that is there when none is to be resumed.
 void check(const CheckpointOptions& options);
 
-/// What the checkpoint holds, which must be of a render with this key. InputError names what differs.
-RenderSums load_checkpoint(const CheckpointOptions& options, const ImageKey& key);
+/// What the checkpoint holds, which must be of the same render as `wanted` and have no samples outside of `samples`.
+/// InputError names what differs.
+RenderSums load_checkpoint(const CheckpointOptions& options, const RenderSums& wanted, const SampleRange& samples);
 
 /// Keeps the checkpoint of one render. With a file, SIGINT and SIGTERM ask it to stop while it lives; a second signal
 /// ends the program at once, with the last checkpoint whole.

@@ -1,4 +1,5 @@
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,36 +23,44 @@ struct MergeOptions {
     bool is_quiet = false;
 };
 
-std::int64_t asked_samples(const ImageKey& key) {
-    for (const auto& [name, value] : key)
-        if (name == "spp") return std::stoll(value);
-    return 0;
-}
-
-/// Adds a part to the sum of those before it.
-void add(RenderSums& sum, const std::string& file) {
-    const RenderSums part = read_sums(file);
-    if (!part.sample_counts.empty())
-        throw InputError(fmt::format("{}: of an adaptive render, which has no parts", file));
-    if (const std::string differs = difference(part.key, sum.key); !differs.empty())
-        throw InputError(fmt::format("{}: a part of a render with {}", file, differs));
+/// Calls work, and names the file in what it throws.
+template <class Work>
+void with_name(const std::string& file, Work work) {
     try {
-        for (const SampleRange& range : part.ranges) sum.ranges = with_range(std::move(sum.ranges), range);
+        work();
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", file, error.what()));
     }
-    for (std::size_t i = 0; i < sum.framebuffer.sums().size(); ++i)
-        sum.framebuffer.sums()[i] += part.framebuffer.sums()[i];
+}
+
+RenderSums read_part(const std::string& file) {
+    RenderSums part = read_sums(file);
+    if (part.framebuffer.has_squares())
+        throw InputError(fmt::format("{}: of an adaptive render, which has no parts", file));
+    return part;
+}
+
+/// Adds a part to the sum of those before it.
+void add(RenderSums& sum, const RenderSums& part) {
+    check_same_render(part, sum);
+    for (const SampleRange& range : part.ranges) sum.ranges = with_range(std::move(sum.ranges), range);
+    const std::span<std::int64_t> sums = sum.framebuffer.sums();
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        if (__builtin_add_overflow(sums[i], part.framebuffer.sums()[i], &sums[i]))
+            throw InputError("its sums are too large to be a part");
 }
 
 int merge(const MergeOptions& options) {
     if (!options.output.empty()) image_format(options.output);
     for (const std::string& file : {options.output, options.checkpoint})
         if (!file.empty()) check_writable(file);
-    RenderSums sum = read_sums(options.parts.front());
-    if (!sum.sample_counts.empty())
-        throw InputError(fmt::format("{}: of an adaptive render, which has no parts", options.parts.front()));
-    for (std::size_t i = 1; i < options.parts.size(); ++i) add(sum, options.parts[i]);
+    RenderSums sum = read_part(options.parts.front());
+    std::int64_t spp = 0;
+    with_name(options.parts.front(), [&] { spp = whole_number(sum.key, "spp", 1, kMostSpp); });
+    for (std::size_t i = 1; i < options.parts.size(); ++i) {
+        const RenderSums part = read_part(options.parts[i]);
+        with_name(options.parts[i], [&] { add(sum, part); });
+    }
 
     if (!options.output.empty()) {
         ImageAttributes attributes{{"raypool.hash", sum.framebuffer.hash()}};
@@ -59,13 +68,12 @@ int merge(const MergeOptions& options) {
         write_image(options.output, sum.framebuffer.image(sum.sample_count()), attributes);
     }
     if (!options.checkpoint.empty()) write_sums(options.checkpoint, sum);
-    const std::vector<SampleRange> missing = gaps(sum.ranges, asked_samples(sum.key));
+    const std::vector<SampleRange> missing = gaps(sum.ranges, spp);
     for (const SampleRange& gap : missing)
         fmt::print(stderr, "raypool: samples {} to {} are missing (--samples {}:{})\n", gap.first, gap.end, gap.first,
                    gap.end);
     if (!options.is_quiet)
-        fmt::print("{} of {} samples a pixel\nhash {}\n", sum.sample_count(), asked_samples(sum.key),
-                   sum.framebuffer.hash());
+        fmt::print("{} of {} samples a pixel\nhash {}\n", sum.sample_count(), spp, sum.framebuffer.hash());
     return missing.empty() ? 0 : 1;
 }
 

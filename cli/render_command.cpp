@@ -1,10 +1,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <memory>
 
 #include <fmt/format.h>
@@ -14,19 +12,16 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/pool_options.h"
-#include "cli/progress_bar.h"
+#include "cli/render_image.h"
 #include "cli/stats_json.h"
+#include "cli/stopwatch.h"
 #include "core/cost_image.h"
 #include "core/error.h"
 #include "core/heat_map.h"
 #include "core/image_file.h"
 #include "core/output_file.h"
-#include "core/progressive.h"
-#include "core/scene_hash.h"
 #include "core/scene_reader.h"
 #include "core/trace.h"
-#include "recursive/engine.h"
-#include "wavefront/engine.h"
 
 namespace raypool::cli {
 
@@ -59,26 +54,6 @@ struct RenderOptions {
     PoolOptions pool;
 };
 
-class Stopwatch {
-  public:
-    [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-    double lap() {
-        const double elapsed = seconds();
-        start_ = Clock::now();
-        return elapsed;
-    }
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point start_ = Clock::now();
-};
-
-std::unique_ptr<Engine> make_engine(const std::string& name, const wavefront::PoolSettings& pool) {
-    if (name == "wavefront") return std::make_unique<wavefront::WavefrontEngine>(pool);
-    if (name == "iterative") return std::make_unique<recursive::IterativeEngine>();
-    return std::make_unique<recursive::RecursiveEngine>();
-}
-
 Cost cost_of(const std::string& word) {
     if (word == "segments") return Cost::Segments;
     return word == "ns" ? Cost::Nanoseconds : Cost::Tests;
@@ -105,9 +80,13 @@ RenderSettings render_settings(const RenderOptions& options) {
     return settings;
 }
 
-/// Sums and the image made of them must fit into the machine, before anything is touched.
-void check_memory(const Scene& scene) {
-    const double bytes = static_cast<double>(scene.width * scene.height) * 3 * (sizeof(std::int64_t) + sizeof(float));
+/// Sums, the image made of them and, where asked for, second moments with their estimates and the checkpoint's bytes
+/// must fit into the machine, before anything is touched.
+void check_memory(const Scene& scene, const RenderOptions& options) {
+    double pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
+    if (options.target_error > 0) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
+    if (!options.checkpoint.file.empty()) pixel_bytes += 4 * sizeof(std::int64_t) + sizeof(std::int32_t);
+    const double bytes = static_cast<double>(scene.width * scene.height) * pixel_bytes;
     const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (bytes > machine)
         throw InputError(
@@ -122,7 +101,8 @@ std::size_t stored_record_bytes(const Scene& scene, Precision precision) {
 }
 
 ImageAttributes image_attributes(const RenderRecord& record) {
-    ImageAttributes attributes{{"raypool.hash", record.hash}};
+    ImageAttributes attributes{{"raypool.hash", record.hash},
+                               {"raypool.samples_done", fmt::to_string(record.samples_done)}};
     const nlohmann::json settings = settings_json(record);
     for (const auto& [key, value] : settings.items())
         attributes["raypool." + key] = value.is_string() ? value.get<std::string>() : value.dump();
@@ -137,17 +117,14 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
     write_image(options.cost_image, is_picture ? heat_map(cost) : cost.image(), attributes);
 }
 
-void print_summary(const RenderRecord& record) {
-    const RenderSettings& settings = record.settings;
-    const RenderReport& report = record.report;
+/// What was traced just now, which is nothing where a checkpoint was complete.
+void print_work(const RenderSettings& settings, const RenderReport& report) {
     const auto paths = static_cast<double>(report.paths());
     const auto segments = static_cast<double>(report.segments());
-    fmt::print("{}: {} x {}, samples {} to {} of {}, depth {}{}, {}seed {}, {}\n", record.scene_name, record.width,
-               record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth,
-               settings.roulette ? " and roulette" : "", settings.sampler == Sampler::Sobol ? "sobol, " : "",
-               settings.seed, record.precision == Precision::Float ? "float" : "double");
-    fmt::print("{} engine: {} thread{}, grain {}, schedule {}\n", record.engine, settings.threads,
-               settings.threads == 1 ? "" : "s", to_string(settings.grain), to_string(settings.schedule));
+    if (paths == 0) {
+        fmt::print("no sample was missing\n");
+        return;
+    }
     fmt::print("{:.3f} M paths, {:.3f} M segments ({:.3f} a path) in {:.3f} s: {:.3f} M paths/s, {:.1f} ns a segment\n",
                paths * 1e-6, segments * 1e-6, segments / paths, report.seconds, paths / report.seconds * 1e-6,
                segments == 0 ? 0 : report.seconds * 1e9 * settings.threads / segments);
@@ -155,6 +132,18 @@ void print_summary(const RenderRecord& record) {
         fmt::print("{:.2f} box tests and {:.2f} primitive tests a segment\n",
                    static_cast<double>(report.total(&ThreadWork::box_tests)) / segments,
                    static_cast<double>(report.total(&ThreadWork::primitive_tests)) / segments);
+}
+
+void print_summary(const RenderRecord& record) {
+    const RenderSettings& settings = record.settings;
+    const RenderReport& report = record.report;
+    fmt::print("{}: {} x {}, samples {} to {} of {}, depth {}{}, {}seed {}, {}\n", record.scene_name, record.width,
+               record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth,
+               settings.roulette ? " and roulette" : "", settings.sampler == Sampler::Sobol ? "sobol, " : "",
+               settings.seed, record.precision == Precision::Float ? "float" : "double");
+    fmt::print("{} engine: {} thread{}, grain {}, schedule {}\n", record.engine, settings.threads,
+               settings.threads == 1 ? "" : "s", to_string(settings.grain), to_string(settings.schedule));
+    print_work(settings, report);
     if (record.target_error > 0) {
         const auto [least, most] =
             std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
@@ -180,94 +169,6 @@ void print_trace(const std::string& file, const Trace& trace) {
         fmt::print(", and {} that are left out: the trace ends early, with {} events of a thread",
                    trace.dropped_count(), Trace::kMostEvents);
     fmt::print("\n");
-}
-
-/// All that fixes the image. Threads, engine and pool do not.
-ImageKey image_key(const Scene& scene, const RenderRecord& record) {
-    const RenderSettings& settings = record.settings;
-    return {{"scene", scene_hash(scene)},
-            {"width", fmt::to_string(scene.width)},
-            {"height", fmt::to_string(scene.height)},
-            {"spp", fmt::to_string(record.spp)},
-            {"depth", fmt::to_string(settings.depth)},
-            {"split_depth", fmt::to_string(settings.split_depth)},
-            {"seed", fmt::to_string(settings.seed)},
-            {"sampler", settings.sampler == Sampler::Sobol ? "sobol" : "independent"},
-            {"roulette", settings.roulette ? "on" : "off"},
-            {"precision", record.precision == Precision::Float ? "float" : "double"},
-            {"target_error", fmt::to_string(record.target_error)}};
-}
-
-/// Renders what `sums` lacks, and keeps checkpoints.
-template <class Scalar>
-RenderReport render_missing(const CompiledScene<Scalar>& scene, const RenderRecord& record, RenderSums& sums,
-                            AdaptiveReport& adaptive, Checkpoint& checkpoint) {
-    const std::unique_ptr<Engine> engine = make_engine(record.engine, record.pool);
-    if (record.target_error > 0) {
-        std::vector<std::int32_t> counts = sums.sample_counts;
-        if (counts.empty()) counts.resize(static_cast<std::size_t>(scene.pixel_count()));
-        AdaptivePlan plan(record.target_error, record.settings.end_sample, std::move(counts), sums.rounds);
-        const auto keep = [&] {
-            sums.sample_counts = plan.sample_counts();
-            sums.rounds = plan.rounds();
-            return checkpoint.keep(sums);
-        };
-        RenderReport report = render_adaptively(*engine, scene, record.settings, plan, sums.framebuffer, keep);
-        adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds()};
-        return report;
-    }
-    RenderReport report;
-    report.threads.resize(static_cast<std::size_t>(record.settings.threads));
-    for (const SampleRange& gap : gaps(sums.ranges, record.settings.end_sample)) {
-        RenderSettings settings = record.settings;
-        settings.first_sample = std::max(gap.first, settings.first_sample);
-        settings.end_sample = gap.end;
-        if (settings.first_sample >= settings.end_sample) continue;
-        if (!checkpoint.is_kept()) {
-            report.add(engine->render(scene, settings, sums.framebuffer));
-            sums.ranges = with_range(std::move(sums.ranges), {settings.first_sample, settings.end_sample});
-            continue;
-        }
-        report.add(render_in_pieces(*engine, scene, settings, sums.framebuffer, [&](const SampleRange& range) {
-            sums.ranges = with_range(std::move(sums.ranges), range);
-            return checkpoint.keep(sums);
-        }));
-        if (checkpoint.stopped_by() != 0) break;
-    }
-    return report;
-}
-
-template <class Scalar>
-Image render_scene(const Scene& scene, const RenderOptions& options, Checkpoint& checkpoint, RenderRecord& record) {
-    Stopwatch watch;
-    const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
-    record.needs = compiled.needs;
-    record.truncation_bound = compiled.truncation_bound(record.settings.depth);
-    record.compile_s = watch.lap();
-
-    const bool is_adaptive = record.target_error > 0;
-    const ImageKey key = image_key(scene, record);
-    RenderSums sums = options.checkpoint.is_resumed
-                          ? load_checkpoint(options.checkpoint, key)
-                          : RenderSums{key,
-                                       {},
-                                       {},
-                                       0,
-                                       Framebuffer(compiled.width, compiled.height,
-                                                   FixedPoint::make(record.spp, compiled.max_radiance),
-                                                   is_adaptive ? Moments::Second : Moments::First)};
-    Progress progress;
-    record.settings.progress = &progress;
-    progress.paths = compiled.pixel_count() * sums.sample_count();
-    {
-        const ProgressBar bar(progress, path_count(compiled, record.settings), {"M paths/s", 1e-6}, options.is_quiet);
-        record.report = render_missing(compiled, record, sums, record.adaptive, checkpoint);
-    }
-    checkpoint.write(sums);
-    record.settings.progress = nullptr;
-    record.hash = sums.framebuffer.hash();
-    return is_adaptive ? sums.framebuffer.image(record.adaptive.sample_counts)
-                       : sums.framebuffer.image(sums.sample_count());
 }
 
 int render(const RenderOptions& options) {
@@ -300,7 +201,7 @@ int render(const RenderOptions& options) {
     Stopwatch watch;
     Scene scene = load_scene(options.scene);
     if (options.width != 0) set_width(scene, options.width);
-    check_memory(scene);
+    check_memory(scene, options);
     CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;
     record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.precision));
@@ -310,8 +211,7 @@ int render(const RenderOptions& options) {
     record.read_s = watch.seconds();
 
     Checkpoint checkpoint(options.checkpoint);
-    const Image image = record.precision == Precision::Double ? render_scene<double>(scene, options, checkpoint, record)
-                                                              : render_scene<float>(scene, options, checkpoint, record);
+    const Image image = render_image(scene, options.checkpoint, options.is_quiet, checkpoint, record);
     watch.lap();
     if (!options.output.empty()) write_image(options.output, image, image_attributes(record));
     record.write_s = watch.seconds();
@@ -323,8 +223,8 @@ int render(const RenderOptions& options) {
     const int signal = checkpoint.stopped_by();
     if (signal != 0)
         fmt::print(stderr,
-                   "raypool: stopped; {} holds what is done: the same command with --resume goes on from there\n",
-                   options.checkpoint.file);
+                   "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
+                   options.checkpoint.file, record.samples_done);
     const int status = signal == 0 ? 0 : 128 + signal;
     if (options.is_quiet) return status;
     print_summary(record);
@@ -339,7 +239,6 @@ int render(const RenderOptions& options) {
 void add_render_command(CLI::App& app, int& status) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a scene, print its figures and the hash of its sums");
-    constexpr std::int64_t kMostSpp = std::numeric_limits<std::int32_t>::max();
     command->add_option("scene", options->scene, "Scene file, or the name of a built-in scene (default: paper)");
     command->add_option("-o,--output", options->output, "Image file: .png (sRGB), .exr or .pfm (linear)")
         ->check(check_file_name);

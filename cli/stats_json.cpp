@@ -39,6 +39,7 @@ json stats_json(const RenderRecord& record) {
     const RenderReport& report = record.report;
     const auto paths = static_cast<double>(report.paths());
     const auto segments = static_cast<double>(report.segments());
+    const auto ratio = [](double a, double b) { return b == 0 ? json() : json(a / b); };  // of nothing there is none
     json threads = json::array();
     for (const ThreadWork& work : report.threads) {
         json thread{
@@ -70,8 +71,9 @@ json stats_json(const RenderRecord& record) {
                  {"total", record.total_s}}},
                {"paths", report.paths()},
                {"segments", report.segments()},
-               {"segments_per_path", segments / paths},
-               {"mpaths_per_s", paths / report.seconds * 1e-6},
+               {"samples_done", record.samples_done},
+               {"segments_per_path", ratio(segments, paths)},
+               {"mpaths_per_s", ratio(paths * 1e-6, report.seconds)},
                {"audit",
                 {{"non_finite", report.audit.non_finite},
                  {"clamped", report.audit.clamped},

@@ -29,9 +29,10 @@ struct RenderRecord {
     AdaptiveReport adaptive;
     double truncation_bound = 0;  ///< CompiledScene::truncation_bound() at the depth of the settings
     std::string hash;
-    double read_s = 0;     ///< scene file to description
-    double compile_s = 0;  ///< description to tables
-    double write_s = 0;    ///< sums to image file
+    std::int64_t samples_done = 0;  ///< for each pixel, those of a resumed checkpoint too; on average where adaptive
+    double read_s = 0;              ///< scene file to description
+    double compile_s = 0;           ///< description to tables
+    double write_s = 0;             ///< sums to image file
     double total_s = 0;
 };
 

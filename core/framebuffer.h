@@ -46,6 +46,7 @@ struct FixedPoint {
     /// The step of a sum of squares is 2^-square_bits: `spp` samples of three channels at the limit fit.
     int square_bits = 0;
 
+    bool operator==(const FixedPoint&) const = default;
     [[nodiscard]] double scale() const { return std::ldexp(1.0, fraction_bits); }
     [[nodiscard]] double square_scale() const { return std::ldexp(1.0, square_bits); }
 };

@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/output_file.h"
+#include "core/settings_text.h"
 
 namespace raypool {
 
@@ -65,6 +66,9 @@ void take(std::string_view& bytes, std::span<T> values) {
 }
 
 std::string read_bytes(const std::filesystem::path& path) {
+    std::error_code error;
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+        throw InputError(fmt::format("{}: not a file", path.string()));  // a device may never end
     std::ifstream stream(path, std::ios::binary);
     if (!stream) throw InputError(fmt::format("{}: cannot open: {}", path.string(), std::strerror(errno)));
     std::string bytes{std::istreambuf_iterator<char>(stream), {}};
@@ -120,6 +124,24 @@ std::string difference(const ImageKey& found, const ImageKey& wanted) {
             return fmt::format("{} {}, not {}", found[i].first, found[i].second, wanted[i].second);
     }
     return found.size() == wanted.size() ? "" : "another number of settings";
+}
+
+std::int64_t whole_number(const ImageKey& key, std::string_view name, std::int64_t least, std::int64_t most) {
+    for (const auto& [own_name, value] : key)
+        if (own_name == name)
+            if (const auto number = parse_integer(value, least, most)) return *number;
+    throw InputError(fmt::format("its {} is no whole number from {} to {}", name, least, most));
+}
+
+void check_same_render(const RenderSums& found, const RenderSums& wanted) {
+    if (const std::string differs = difference(found.key, wanted.key); !differs.empty())
+        throw InputError(fmt::format("of a render with {}", differs));
+    const Framebuffer& a = found.framebuffer;
+    const Framebuffer& b = wanted.framebuffer;
+    const auto is_adaptive = [](const RenderSums& sums) { return sums.framebuffer.has_squares(); };
+    if (a.width() != b.width() || a.height() != b.height() || a.fixed_point() != b.fixed_point() ||
+        is_adaptive(found) != is_adaptive(wanted) || (!is_adaptive(found) && !found.sample_counts.empty()))
+        throw InputError("its sums are not of the render that it says");
 }
 
 std::int64_t RenderSums::sample_count() const {

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,9 @@ using ImageKey = std::vector<std::pair<std::string, std::string>>;
 /// The first thing in which two keys differ, "depth 50, not 20"; empty where they agree.
 std::string difference(const ImageKey& found, const ImageKey& wanted);
 
+/// The value of a whole number in a key; InputError where it is none, or not in [least, most].
+std::int64_t whole_number(const ImageKey& key, std::string_view name, std::int64_t least, std::int64_t most);
+
 struct RenderSums {
     ImageKey key;
     std::vector<SampleRange> ranges;  ///< rising and apart: those that touch are one. Empty for an adaptive render
@@ -41,6 +45,10 @@ struct RenderSums {
 
     [[nodiscard]] std::int64_t sample_count() const;
 };
+
+/// Throws InputError, saying what differs, unless the sums of both can be added up: one key, size and fixed point, and
+/// both adaptive or neither. A file is not believed to have what its key says.
+void check_same_render(const RenderSums& found, const RenderSums& wanted);
 
 /// `ranges` with one more; throws InputError where samples would be there twice.
 std::vector<SampleRange> with_range(std::vector<SampleRange> ranges, const SampleRange& more);

@@ -27,9 +27,6 @@ constexpr double kTimeMargin = 0.9;  ///< part of a budget of time that is plann
 constexpr std::int64_t kMostSpp = std::numeric_limits<std::int32_t>::max();
 constexpr int kDepths[] = {3, 5, 8, 12, 20, 50, 200};
 
-double mean(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
@@ -175,7 +172,8 @@ double Pilot::seconds_of(double samples) const {
     return median(seconds) * samples / static_cast<double>(spp);
 }
 
-/// The slope of Sobol samples is a measured one, and what is foretold by it less sure than by the -1 of independent ones.
+/// The slope of Sobol samples is a measured one, and what is foretold by it less sure than by the -1 of independent
+/// ones.
 constexpr double kSobolMargin = 1.25;
 
 std::optional<std::int64_t> samples_for(const Pilot& pilot, const Target& target) {

@@ -2,8 +2,8 @@
 ///
 /// Made a range of samples at a time and kept in a folder, so that it is made once and an interruption loses no more
 /// than a range. A file is found by a key over the scene, the image size, the settings and the image of the first
-/// sample: if the scene, or what light does, changes, the key is another and nothing old is taken for new. Files appear
-/// whole and carry a checksum. Not thread-safe.
+/// sample: if the scene, or what light does, changes, the key is another and nothing old is taken for new. Files are
+/// those of sums_file.h. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 #include "bench/accuracy/configuration.h"
 #include "bench/accuracy/statistics.h"
-#include "core/framebuffer.h"
+#include "core/sums_file.h"
 
 namespace raypool::accuracy {
 
@@ -39,21 +39,16 @@ class Reference {
     const std::string& key();
 
   private:
-    struct Half {
-        Framebuffer framebuffer;
-        std::int64_t sample_count = 0;
-    };
     void open();
     [[nodiscard]] std::filesystem::path file(std::size_t half);
     void load(std::size_t half);
-    void save(std::size_t half);
 
     std::shared_ptr<const SceneInBoth> scene_;
     std::int64_t half_spp_;
     std::filesystem::path folder_;
     int threads_;
     std::string key_;
-    std::vector<Half> halves_;  ///< two, once open
+    std::vector<RenderSums> halves_;  ///< two, once open
     std::optional<Halves> means_;
 };
 

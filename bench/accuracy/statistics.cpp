@@ -33,6 +33,10 @@ double median_of(std::vector<double> values) {
 
 }  // namespace
 
+double mean(std::span<const double> values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
 double mean_squared_difference(const Values& a, const Values& b) {
     RAYPOOL_CHECK(a.size() == b.size() && !a.empty(), "images of one size");
     double sum = 0;

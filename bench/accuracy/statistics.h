@@ -15,6 +15,9 @@ namespace raypool::accuracy {
 /// Channel values of an image: three a pixel.
 using Values = std::vector<double>;
 
+/// Of at least one value.
+double mean(std::span<const double> values);
+
 /// Mean of (a - b)^2. The images have the same size and at least one pixel.
 double mean_squared_difference(const Values& a, const Values& b);
 

@@ -17,6 +17,8 @@ namespace raypool::studies::speed_accuracy {
 
 namespace {
 
+using accuracy::mean;
+
 using accuracy::Comparison;
 using accuracy::Configuration;
 using accuracy::Runs;
@@ -44,10 +46,6 @@ struct Scene {
         return {rows.numbers("seconds"), rows.numbers("mse")};
     }
 };
-
-double mean(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 
 /// Of mean squared errors; zero where the correction for noise left nothing.
 double rmse(const Runs& runs) {

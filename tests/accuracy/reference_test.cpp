@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/scene_hash.h"
 #include "core/error.h"
+#include "core/scene_hash.h"
 #include "tests/core/scratch_folder.h"
 #include "tests/small_render.h"
 
@@ -84,7 +84,7 @@ TEST(Reference, RefusesADamagedFileNamingIt) {
     flipped[bytes.size() - 100] ^= 1;
     EXPECT_TRUE(is_refused(flipped)) << "a bit of a sum";
     std::string other_count = bytes;
-    other_count.replace(other_count.find("\"samples\":10"), 12, "\"samples\":11");
+    other_count.replace(other_count.find("\"ranges\":[[0,10]]"), 17, "\"ranges\":[[0,11]]");
     EXPECT_TRUE(is_refused(other_count)) << "the count of samples";
     EXPECT_TRUE(is_refused(bytes.substr(0, bytes.size() - 8))) << "an end cut off";
     EXPECT_TRUE(is_refused("")) << "nothing";

@@ -3,6 +3,9 @@
 RAYPOOL_KILLS=50 kills a render so many times (a few, where it is not set). The last test prints the table of faults.
 """
 
+import ctypes
+import ctypes.util
+import json
 import os
 import random
 import resource
@@ -11,6 +14,14 @@ import subprocess
 import time
 
 from command import CommandTest, main
+
+def xxhash(content):
+    """The 16 hexadecimal digits of XXH3."""
+    library = ctypes.CDLL(ctypes.util.find_library("xxhash"))
+    library.XXH3_64bits.restype = ctypes.c_uint64
+    library.XXH3_64bits.argtypes = (ctypes.c_char_p, ctypes.c_size_t)
+    return f"{library.XXH3_64bits(content, len(content)):016x}".encode()
+
 
 def render(**changes):
     """The arguments of the render that tests interrupt, some of them changed."""
@@ -140,10 +151,46 @@ class CheckpointTest(CommandTest):
         self.run_well(*RENDER, "--seed", 1, "--samples", "100:300", "--checkpoint", "other.sums")
         self.assert_refused("merge", "0:100.sums", "other.sums", named=["other.sums", "seed"])
 
+    def test_complete_checkpoint_is_the_image_and_says_that_nothing_was_missing(self):
+        first = self.run_well(*RENDER, "--checkpoint", "c.sums", "-o", "a.pfm")
+        again = self.run_well(*RENDER, "--checkpoint", "c.sums", "--resume", "-o", "b.pfm", "--stats", "s.json")
+        self.assertEqual(self.hash_of(again), self.hash_of(first))
+        self.assertIn("no sample was missing", again.stdout)
+        self.assertNotIn("nan", again.stdout)
+        self.assertEqual((self.folder / "a.pfm").read_bytes(), (self.folder / "b.pfm").read_bytes())
+        stats = json.loads((self.folder / "s.json").read_text())
+        self.assertEqual((stats["paths"], stats["samples_done"]), (0, 300))
+
+    def test_file_that_lies_about_its_sums_is_refused(self):
+        """Its checksum is right, its key too; its sums are another image's."""
+        self.run_well(*render(width=60), "--samples", "0:1", "--checkpoint", "small.sums")
+        self.run_well(*RENDER, "--samples", "1:2", "--checkpoint", "good.sums")
+        small = (self.folder / "small.sums").read_bytes()
+        header = json.loads(small.split(b"\n", 1)[0])
+        header["key"] = json.loads((self.folder / "good.sums").read_bytes().split(b"\n", 1)[0])["key"]
+        forged = json.dumps(header).encode() + b"\n" + small.split(b"\n", 1)[1][:-16]
+        checksum = xxhash(forged)
+        (self.folder / "forged.sums").write_bytes(forged + checksum)
+        self.assert_refused("merge", "good.sums", "forged.sums", named=["forged.sums", "its sums"])
+        self.assert_refused(*RENDER, "--checkpoint", "forged.sums", "--resume", named=["forged.sums", "its sums"])
+
+    def test_what_never_ends_is_not_read(self):
+        for path in ("/dev/zero", "."):
+            self.assert_refused("merge", path, named=path, timeout=20)
+
+    def test_trace_of_a_render_in_pieces_has_all_of_them(self):
+        for options, passes in (((*RENDER, "--checkpoint", "c.sums"), 3), (render(**{"target-error": 0.02}), 2)):
+            self.run_well(*options, "--trace", "t.json")
+            events = json.loads((self.folder / "t.json").read_text())["traceEvents"]
+            lines = [event for event in events if event.get("name") == "line" and event["args"]["y"] == 0]
+            self.assertGreaterEqual(len(lines), passes)
+
     def test_what_makes_no_sense_is_refused(self):
         self.run_well(*RENDER, "--samples", "0:1", "--checkpoint", "c.sums")
         self.assert_refused(*RENDER, "--checkpoint", "c.sums", named=["c.sums", "--resume"])
         self.assert_refused(*RENDER, "--resume", named="--checkpoint")
+        self.assert_refused(*RENDER, "--samples", "5:9", "--checkpoint", "c.sums", "--resume",
+                            named=["c.sums", "0 to 1", "--samples"])
         for setting, value in (("seed", 5), ("depth", 7), ("spp", 301), ("width", 121), ("split-depth", 1),
                                ("precision", "double"), ("target-error", 0.1)):
             self.assert_refused(*render(**{setting: value}), "--checkpoint", "c.sums", "--resume",
