@@ -96,8 +96,9 @@ Summary summarise_adaptive(const Table& data) {
     summary.notes.push_back(
         "Errors are against a reference of independent halves, less its noise. Time at equal error is the ratio of "
         "efficiencies 1/(MSE s), with a percentile bootstrap over seeds; the time of the estimates between passes "
-        "counts. A shift of the mean beyond its standard error, where uniform has none, is the bias of stopping by "
-        "what was seen.");
+        "counts. Pools take lines on the cores that there are, so that a faster core traces more, which is no waiting. "
+        "A shift of the mean beyond its standard error, where uniform has none, is the bias of stopping by what was "
+        "seen.");
     return summary;
 }
 

@@ -166,6 +166,7 @@ std::optional<Finding> answer(const Question& question, const std::vector<Scene>
     std::size_t first = 0;
     std::size_t second = 0;
     std::size_t seeds = 0;
+    double spp = 0;
     for (const Scene& scene : scenes) {
         if (!scene.has(question.first) || !scene.has(question.second)) continue;
         const Runs runs = scene.at(to_string(question.first), scene.spps().back());
@@ -174,11 +175,17 @@ std::optional<Finding> answer(const Question& question, const std::vector<Scene>
         first += found.winner == Winner::First ? 1 : 0;
         second += found.winner == Winner::Second ? 1 : 0;
         seeds = runs.mse.size();
+        spp = scene.spps().back();
         parts.push_back(fmt::format("{} {}{}", scene.name, ratio_text(found),
                                     found.winner == Winner::NoDifference ? ", no difference" : ""));
     }
     if (parts.empty()) return {};
-    Finding finding{"", question.claim, "", fmt::format("{}", fmt::join(parts, "; ")), Verdict::CannotTell, ""};
+    Finding finding{"",
+                    fmt::format("at {:g} samples a pixel {}", spp, question.claim),
+                    "",
+                    fmt::format("{}", fmt::join(parts, "; ")),
+                    Verdict::CannotTell,
+                    ""};
     if (seeds < accuracy::kLeastSeeds) {
         finding.why = fmt::format("fewer than {} seeds", accuracy::kLeastSeeds);
     } else if (first == parts.size()) {

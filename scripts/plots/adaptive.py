@@ -20,7 +20,6 @@ def adaptive(run, rows):
             left.plot([statistics.median(ratios)], [place], "|", color="black", markersize=18, markeredgewidth=2)
         places.append(f"{scene}, {target:g}")
     left.axvline(1, color="black", linewidth=0.9)
-    left.set_xscale("log")
     left.set_yticks(range(len(places)), places)
     left.invert_yaxis()
     left.set_xlabel("efficiency of adaptive / uniform")
