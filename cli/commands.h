@@ -11,6 +11,8 @@ void add_render_command(CLI::App& app, int& status);
 void add_compare_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app, int& status);
 void add_diff_command(CLI::App& app, int& status);
+void add_advise_command(CLI::App& app, int& status);
+void add_merge_command(CLI::App& app, int& status);
 void add_study_command(CLI::App& app, int& status);
 
 }  // namespace raypool::cli

@@ -44,6 +44,8 @@ struct CompareOptions {
     std::int64_t depth = 50;
     int split_depth = 0;
     std::uint64_t seed = 0;
+    std::string sampler = "independent";
+    bool roulette = false;
     int threads = 0;
     std::string schedule;
     std::string grain = "line";
@@ -179,11 +181,14 @@ int compare(const CompareOptions& options) {
     settings.depth = static_cast<std::int32_t>(options.depth);
     settings.split_depth = options.split_depth;
     settings.seed = options.seed;
+    settings.sampler = parse_sampler(options.sampler);
+    settings.roulette = options.roulette;
     settings.threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
     settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
     settings.grain = parse_grain(options.grain);
 
-    const bool with_peers = !options.only_check && settings.split_depth == 0;  // which have no split
+    const bool with_peers =
+        !options.only_check && settings.split_depth == 0 && !settings.roulette;  // which have neither
     std::vector<Contender> list = contenders(scene, compiled, settings, with_peers);
     const int repeats = options.only_check ? 1 : options.repeats;
     for (int i = 0; i < repeats; ++i) run_all(list, static_cast<std::size_t>(i), compiled, settings);
@@ -210,6 +215,8 @@ int compare(const CompareOptions& options) {
                                   {"height", scene.height},
                                   {"spp", options.spp},
                                   {"depth", settings.depth},
+                                  {"sampler", to_string(settings.sampler)},
+                                  {"roulette", settings.roulette},
                                   {"threads", settings.threads},
                                   {"schedule", to_string(settings.schedule)},
                                   {"grain", to_string(settings.grain)},
@@ -235,6 +242,8 @@ void add_compare_command(CLI::App& app, int& status) {
     command->add_option("--split-depth", options->split_depth, "Follow both rays at so many first hits on glass")
         ->check(CLI::Range(0, path_step::kMostSplits));
     command->add_option("--seed", options->seed, "Seed of all random numbers (default: 0)");
+    command->add_option("--sampler", options->sampler, "As for render")->check(CLI::IsMember({"independent", "sobol"}));
+    command->add_flag("--roulette", options->roulette, "As for render");
     command->add_option("--threads", options->threads, "OpenMP threads (default: OMP_NUM_THREADS)")
         ->check(CLI::Range(1, 4096));
     command->add_option("--schedule", options->schedule, "As for render");

@@ -36,6 +36,8 @@ int main(int argc, char** argv) {
         raypool::cli::add_compare_command(app, status);
         raypool::cli::add_info_command(app, status);
         raypool::cli::add_diff_command(app, status);
+        raypool::cli::add_advise_command(app, status);
+        raypool::cli::add_merge_command(app, status);
         raypool::cli::add_study_command(app, status);
         try {
             app.parse(argc, argv);

@@ -3,19 +3,20 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 
 #include "core/settings_text.h"
+#include "core/sums_file.h"
 
 namespace raypool::cli {
 
 enum class Precision : std::uint8_t { Float, Double };
 
-struct SampleRange {
-    std::int64_t first;
-    std::int64_t end;
-};
+/// A sample has a number that fits into 31 bits.
+inline constexpr std::int64_t kMostSpp = std::numeric_limits<std::int32_t>::max();
+
 /// "A:B" with 0 <= A < B <= spp.
 SampleRange parse_samples(std::string_view text, std::int64_t spp);
 

@@ -1,18 +1,20 @@
 #include <unistd.h>
 
-#include <chrono>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <memory>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/pool_options.h"
-#include "cli/progress_bar.h"
+#include "cli/render_image.h"
 #include "cli/stats_json.h"
+#include "cli/stopwatch.h"
 #include "core/cost_image.h"
 #include "core/error.h"
 #include "core/heat_map.h"
@@ -20,8 +22,6 @@
 #include "core/output_file.h"
 #include "core/scene_reader.h"
 #include "core/trace.h"
-#include "recursive/engine.h"
-#include "wavefront/engine.h"
 
 namespace raypool::cli {
 
@@ -40,35 +40,19 @@ struct RenderOptions {
     std::int64_t depth = 50;
     int split_depth = 0;
     std::string seed = "0";
+    std::string sampler = "independent";
+    bool roulette = false;
     std::string samples;
+    double target_error = 0;
     int threads = 0;  ///< 0: OpenMP's
     std::string schedule;
     std::string grain = "line";
     std::string precision = "float";
     bool count_work = false;
     bool is_quiet = false;
+    CheckpointOptions checkpoint;
     PoolOptions pool;
 };
-
-class Stopwatch {
-  public:
-    [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-    double lap() {
-        const double elapsed = seconds();
-        start_ = Clock::now();
-        return elapsed;
-    }
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point start_ = Clock::now();
-};
-
-std::unique_ptr<Engine> make_engine(const std::string& name, const wavefront::PoolSettings& pool) {
-    if (name == "wavefront") return std::make_unique<wavefront::WavefrontEngine>(pool);
-    if (name == "iterative") return std::make_unique<recursive::IterativeEngine>();
-    return std::make_unique<recursive::RecursiveEngine>();
-}
 
 Cost cost_of(const std::string& word) {
     if (word == "segments") return Cost::Segments;
@@ -86,6 +70,8 @@ RenderSettings render_settings(const RenderOptions& options) {
     settings.depth = static_cast<std::int32_t>(options.depth);
     settings.split_depth = options.split_depth;
     settings.seed = parse_seed(options.seed);
+    settings.sampler = parse_sampler(options.sampler);
+    settings.roulette = options.roulette;
     settings.threads = thread_count(options.threads);
     settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
     settings.grain = parse_grain(options.grain);
@@ -94,9 +80,13 @@ RenderSettings render_settings(const RenderOptions& options) {
     return settings;
 }
 
-/// Sums and the image made of them must fit into the machine, before anything is touched.
-void check_memory(const Scene& scene) {
-    const double bytes = static_cast<double>(scene.width * scene.height) * 3 * (sizeof(std::int64_t) + sizeof(float));
+/// Sums, the image made of them and, where asked for, second moments with their estimates and the checkpoint's bytes
+/// must fit into the machine, before anything is touched.
+void check_memory(const Scene& scene, const RenderOptions& options) {
+    double pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
+    if (options.target_error > 0) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
+    if (!options.checkpoint.file.empty()) pixel_bytes += 4 * sizeof(std::int64_t) + sizeof(std::int32_t);
+    const double bytes = static_cast<double>(scene.width * scene.height) * pixel_bytes;
     const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (bytes > machine)
         throw InputError(
@@ -111,7 +101,8 @@ std::size_t stored_record_bytes(const Scene& scene, Precision precision) {
 }
 
 ImageAttributes image_attributes(const RenderRecord& record) {
-    ImageAttributes attributes{{"raypool.hash", record.hash}};
+    ImageAttributes attributes{{"raypool.hash", record.hash},
+                               {"raypool.samples_done", fmt::to_string(record.samples_done)}};
     const nlohmann::json settings = settings_json(record);
     for (const auto& [key, value] : settings.items())
         attributes["raypool." + key] = value.is_string() ? value.get<std::string>() : value.dump();
@@ -126,16 +117,14 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
     write_image(options.cost_image, is_picture ? heat_map(cost) : cost.image(), attributes);
 }
 
-void print_summary(const RenderRecord& record) {
-    const RenderSettings& settings = record.settings;
-    const RenderReport& report = record.report;
+/// What was traced just now, which is nothing where a checkpoint was complete.
+void print_work(const RenderSettings& settings, const RenderReport& report) {
     const auto paths = static_cast<double>(report.paths());
     const auto segments = static_cast<double>(report.segments());
-    fmt::print("{}: {} x {}, samples {} to {} of {}, depth {}, seed {}, {}\n", record.scene_name, record.width,
-               record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth, settings.seed,
-               record.precision == Precision::Float ? "float" : "double");
-    fmt::print("{} engine: {} thread{}, grain {}, schedule {}\n", record.engine, settings.threads,
-               settings.threads == 1 ? "" : "s", to_string(settings.grain), to_string(settings.schedule));
+    if (paths == 0) {
+        fmt::print("no sample was missing\n");
+        return;
+    }
     fmt::print("{:.3f} M paths, {:.3f} M segments ({:.3f} a path) in {:.3f} s: {:.3f} M paths/s, {:.1f} ns a segment\n",
                paths * 1e-6, segments * 1e-6, segments / paths, report.seconds, paths / report.seconds * 1e-6,
                segments == 0 ? 0 : report.seconds * 1e9 * settings.threads / segments);
@@ -143,9 +132,31 @@ void print_summary(const RenderRecord& record) {
         fmt::print("{:.2f} box tests and {:.2f} primitive tests a segment\n",
                    static_cast<double>(report.total(&ThreadWork::box_tests)) / segments,
                    static_cast<double>(report.total(&ThreadWork::primitive_tests)) / segments);
+}
+
+void print_summary(const RenderRecord& record) {
+    const RenderSettings& settings = record.settings;
+    const RenderReport& report = record.report;
+    fmt::print("{}: {} x {}, samples {} to {} of {}, depth {}{}, {}seed {}, {}\n", record.scene_name, record.width,
+               record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth,
+               settings.roulette ? " and roulette" : "", settings.sampler == Sampler::Sobol ? "sobol, " : "",
+               settings.seed, record.precision == Precision::Float ? "float" : "double");
+    fmt::print("{} engine: {} thread{}, grain {}, schedule {}\n", record.engine, settings.threads,
+               settings.threads == 1 ? "" : "s", to_string(settings.grain), to_string(settings.schedule));
+    print_work(settings, report);
+    if (record.target_error > 0) {
+        const auto [least, most] =
+            std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
+        fmt::print(
+            "estimated RMSE {:.4g} (asked for {:.4g}) after {} rounds; {} to {} samples a pixel, {:.1f} on average\n",
+            record.adaptive.rmse, record.target_error, record.adaptive.rounds, *least, *most,
+            record.adaptive.mean_samples());
+    }
     if (report.pool_bytes > 0)
         fmt::print("ray record of {} bytes; pools at most {:.2f} MB\n", report.record_bytes,
                    static_cast<double>(report.pool_bytes) / (1024 * 1024));
+    if (record.truncation_bound > 0)
+        fmt::print("depth {} cuts off a radiance of at most {:.3g} a pixel\n", settings.depth, record.truncation_bound);
     if (report.audit.non_finite > 0 || report.audit.clamped > 0)
         fmt::print("bad samples: {} not finite and left out, {} channels cut (radiance {:.6g} in all)\n",
                    report.audit.non_finite, report.audit.clamped, report.audit.clamped_energy);
@@ -160,33 +171,18 @@ void print_trace(const std::string& file, const Trace& trace) {
     fmt::print("\n");
 }
 
-template <class Scalar>
-Image render_scene(const Scene& scene, bool is_quiet, RenderRecord& record) {
-    Stopwatch watch;
-    const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
-    record.needs = compiled.needs;
-    record.compile_s = watch.lap();
-
-    Framebuffer framebuffer(compiled.width, compiled.height, FixedPoint::make(record.spp, compiled.max_radiance));
-    Progress progress;
-    record.settings.progress = &progress;
-    const std::int64_t sample_count = record.settings.end_sample - record.settings.first_sample;
-    {
-        const ProgressBar bar(progress, compiled.pixel_count() * sample_count, {"M paths/s", 1e-6}, is_quiet);
-        record.report = make_engine(record.engine, record.pool)->render(compiled, record.settings, framebuffer);
-    }
-    record.settings.progress = nullptr;
-    record.hash = framebuffer.hash();
-    return framebuffer.image(sample_count);
-}
-
-void render(const RenderOptions& options) {
+int render(const RenderOptions& options) {
     const Stopwatch total;
+    check(options.checkpoint);
     RenderRecord record;
     record.settings = render_settings(options);
     record.spp = options.spp;
     record.precision = options.precision == "double" ? Precision::Double : Precision::Float;
     record.engine = options.engine;
+    record.target_error = options.target_error;
+    if (std::isnan(options.target_error)) throw InputError("--target-error: not a number");
+    if (options.target_error > 0 && !options.samples.empty())
+        throw InputError("--samples: which samples a pixel gets is for --target-error to decide");
     if (!options.output.empty()) {
         image_format(options.output);
         check_writable(options.output);
@@ -205,7 +201,7 @@ void render(const RenderOptions& options) {
     Stopwatch watch;
     Scene scene = load_scene(options.scene);
     if (options.width != 0) set_width(scene, options.width);
-    check_memory(scene);
+    check_memory(scene, options);
     CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;
     record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.precision));
@@ -214,8 +210,8 @@ void render(const RenderOptions& options) {
     record.height = scene.height;
     record.read_s = watch.seconds();
 
-    const Image image = record.precision == Precision::Double ? render_scene<double>(scene, options.is_quiet, record)
-                                                              : render_scene<float>(scene, options.is_quiet, record);
+    Checkpoint checkpoint(options.checkpoint);
+    const Image image = render_image(scene, options.checkpoint, options.is_quiet, checkpoint, record);
     watch.lap();
     if (!options.output.empty()) write_image(options.output, image, image_attributes(record));
     record.write_s = watch.seconds();
@@ -224,19 +220,25 @@ void render(const RenderOptions& options) {
     if (!options.cost_image.empty()) write_cost_image(options, cost, record);
     if (!options.trace.empty()) write_trace(options.trace, trace, image_attributes(record));
 
-    if (options.is_quiet) return;
+    const int signal = checkpoint.stopped_by();
+    if (signal != 0)
+        fmt::print(stderr,
+                   "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
+                   options.checkpoint.file, record.samples_done);
+    const int status = signal == 0 ? 0 : 128 + signal;
+    if (options.is_quiet) return status;
     print_summary(record);
     if (!options.output.empty()) fmt::print("{}\n", options.output);
     if (!options.cost_image.empty()) fmt::print("{}\n", options.cost_image);
     if (!options.trace.empty()) print_trace(options.trace, trace);
+    return status;
 }
 
 }  // namespace
 
-void add_render_command(CLI::App& app, int&) {
+void add_render_command(CLI::App& app, int& status) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a scene, print its figures and the hash of its sums");
-    constexpr std::int64_t kMostSpp = std::numeric_limits<std::int32_t>::max();
     command->add_option("scene", options->scene, "Scene file, or the name of a built-in scene (default: paper)");
     command->add_option("-o,--output", options->output, "Image file: .png (sRGB), .exr or .pfm (linear)")
         ->check(check_file_name);
@@ -245,6 +247,10 @@ void add_render_command(CLI::App& app, int&) {
     command->add_option("--spp", options->spp, "Samples per pixel (default: 100)")
         ->check(CLI::Range(std::int64_t{1}, kMostSpp));
     command->add_option("--samples", options->samples, "Only samples A:B of them, counted from 0, without B");
+    command
+        ->add_option("--target-error", options->target_error,
+                     "Give pixels samples, at most --spp, until the image's estimated RMSE is at most this radiance")
+        ->check(CLI::Range(1e-9, 1e9));
     command->add_option("--width", options->width, "Image width; the height follows (default: the scene's)")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
     command->add_option("--depth", options->depth, "Most segments of a path (default: 50)")
@@ -254,6 +260,11 @@ void add_render_command(CLI::App& app, int&) {
                      "At so many first hits on glass follow both the reflected and the refracted ray (default: 0)")
         ->check(CLI::Range(0, path_step::kMostSplits));
     command->add_option("--seed", options->seed, "Seed of all random numbers (default: 0)");
+    command
+        ->add_option("--sampler", options->sampler,
+                     "How numbers lie in a pixel: independent or sobol (default: independent)")
+        ->check(CLI::IsMember({"independent", "sobol"}));
+    command->add_flag("--roulette", options->roulette, "End paths that carry little by chance, without bias");
     command->add_option("--precision", options->precision, "Numbers of the kernels (default: float)")
         ->check(CLI::IsMember({"float", "double"}));
     command->add_option("--threads", options->threads, "OpenMP threads (default: OMP_NUM_THREADS)")
@@ -264,6 +275,13 @@ void add_render_command(CLI::App& app, int&) {
                         "What a loop iteration renders: pixel, line or tile:N (default: line)");
     add_pool_options(*command, options->pool);
     command->add_flag("--count-work", options->count_work, "Count box and primitive tests (slower)");
+    command
+        ->add_option("--checkpoint", options->checkpoint.file,
+                     "Keep the exact sums in this file, every so often and at the end; `merge` adds such files up")
+        ->check(check_file_name);
+    command->add_option("--every", options->checkpoint.every_s, "Seconds between checkpoints (default: 60)")
+        ->check(CLI::Range(0.0, 1e9));
+    command->add_flag("--resume", options->checkpoint.is_resumed, "Go on from the checkpoint");
     command->add_option("--stats", options->stats, "Write all figures to this file, as JSON")->check(check_file_name);
     command
         ->add_option("--trace", options->trace,
@@ -276,7 +294,7 @@ void add_render_command(CLI::App& app, int&) {
     command->add_option("--cost", options->cost, "What is cost there: segments, tests or ns (default: tests)")
         ->check(CLI::IsMember({"segments", "tests", "ns"}));
     command->add_flag("--quiet", options->is_quiet, "Print nothing");
-    command->callback([options] { render(*options); });
+    command->callback([options, &status] { status = render(*options); });
 }
 
 }  // namespace raypool::cli

@@ -1,5 +1,7 @@
 #include "cli/stats_json.h"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/pool_options.h"
@@ -20,12 +22,15 @@ json settings_json(const RenderRecord& record) {
                 {"depth", settings.depth},
                 {"split_depth", settings.split_depth},
                 {"seed", settings.seed},
+                {"sampler", to_string(settings.sampler)},
+                {"roulette", settings.roulette},
                 {"precision", record.precision == Precision::Float ? "float" : "double"},
                 {"engine", record.engine},
                 {"threads", settings.threads},
                 {"schedule", to_string(settings.schedule)},
                 {"grain", to_string(settings.grain)},
                 {"count_work", settings.count_work}};
+    if (record.target_error > 0) result["target_error"] = record.target_error;
     if (record.engine == "wavefront") result["pool"] = to_json(record.pool);
     return result;
 }
@@ -34,6 +39,7 @@ json stats_json(const RenderRecord& record) {
     const RenderReport& report = record.report;
     const auto paths = static_cast<double>(report.paths());
     const auto segments = static_cast<double>(report.segments());
+    const auto ratio = [](double a, double b) { return b == 0 ? json() : json(a / b); };  // of nothing there is none
     json threads = json::array();
     for (const ThreadWork& work : report.threads) {
         json thread{
@@ -65,16 +71,26 @@ json stats_json(const RenderRecord& record) {
                  {"total", record.total_s}}},
                {"paths", report.paths()},
                {"segments", report.segments()},
-               {"segments_per_path", segments / paths},
-               {"mpaths_per_s", paths / report.seconds * 1e-6},
+               {"samples_done", record.samples_done},
+               {"segments_per_path", ratio(segments, paths)},
+               {"mpaths_per_s", ratio(paths * 1e-6, report.seconds)},
                {"audit",
                 {{"non_finite", report.audit.non_finite},
                  {"clamped", report.audit.clamped},
                  {"clamped_energy", report.audit.clamped_energy}}},
+               {"truncation_bound", record.truncation_bound},
                {"needs", feature_names(record.needs)},
                {"settings", settings_json(record)},
                {"environment", environment_json()},
                {"threads", threads}};
+    if (record.target_error > 0) {
+        const auto [least, most] =
+            std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
+        stats["adaptive"] = {
+            {"rmse_estimate", record.adaptive.rmse},
+            {"rounds", record.adaptive.rounds},
+            {"samples_per_pixel", {{"least", *least}, {"mean", record.adaptive.mean_samples()}, {"most", *most}}}};
+    }
     if (record.engine == "wavefront") {
         stats["record_bytes"] = report.record_bytes;
         stats["pool_bytes"] = report.pool_bytes;

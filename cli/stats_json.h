@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "cli/options.h"
+#include "core/adaptive.h"
 #include "core/engine.h"
 #include "wavefront/settings.h"
 
@@ -24,10 +25,14 @@ struct RenderRecord {
     RenderSettings settings;
     wavefront::PoolSettings pool;  ///< of the wavefront engine
     RenderReport report;
+    double target_error = 0;  ///< 0: every pixel has the same number of samples
+    AdaptiveReport adaptive;
+    double truncation_bound = 0;  ///< CompiledScene::truncation_bound() at the depth of the settings
     std::string hash;
-    double read_s = 0;     ///< scene file to description
-    double compile_s = 0;  ///< description to tables
-    double write_s = 0;    ///< sums to image file
+    std::int64_t samples_done = 0;  ///< for each pixel, those of a resumed checkpoint too; on average where adaptive
+    double read_s = 0;              ///< scene file to description
+    double compile_s = 0;           ///< description to tables
+    double write_s = 0;             ///< sums to image file
     double total_s = 0;
 };
 

@@ -43,12 +43,13 @@ void stop(int signal) {
 }
 
 void list_studies() {
-    for (const auto& study : studies::all_studies()) fmt::print("{:<12} {}\n", study->name(), study->question());
-    fmt::print("{:<12} All of the paper's experiments, and a page that holds its figures against ours.\n", kReproduce);
+    for (const auto& study : studies::all_studies()) fmt::print("{:<14} {}\n", study->name(), study->question());
+    fmt::print("{:<14} All of the paper's experiments, and a page that holds its figures against ours.\n", kReproduce);
 }
 
 /// One study, in `folder`.
-int run(const studies::Study& study, const fs::path& folder, const StudyCommand& command) {
+int run(const studies::Study& study, const fs::path& folder, StudyCommand& command) {
+    command.options.folder = folder;
     Progress progress;
     bool is_complete = false;
     {
@@ -98,7 +99,8 @@ void add_study_command(CLI::App& app, int& status) {
     sub->add_option("--out", command->output, "Folder (default: out/NAME); an interrupted run in it goes on")
         ->check(check_file_name);
     sub->add_flag("--fresh", command->is_fresh, "Begin anew, whatever the folder holds");
-    sub->add_option("--scene", options.scene, "Scene file, or the name of a built-in scene (default: paper)");
+    CLI::Option* scene =
+        sub->add_option("--scene", options.scene, "Scene file, or the name of a built-in scene (default: the study's)");
     const auto at_least_one = [](std::int64_t most) { return CLI::Range(std::int64_t{1}, most); };
     sub->add_option("--width", options.width, "Image width (default: the study's)")->check(at_least_one(65536));
     sub->add_option("--spp", options.spp, "Samples per pixel (default: the study's)")
@@ -110,7 +112,10 @@ void add_study_command(CLI::App& app, int& status) {
         ->check(CLI::Range(1, 1000));
     sub->add_option("--seed", command->seed, "Seed of all random numbers (default: 0)");
     sub->add_flag("--quiet", command->is_quiet, "Print nothing");
-    sub->callback([command, &status] { status = study(*command); });
+    sub->callback([command, scene, &status] {
+        command->options.is_scene_given = scene->count() > 0;
+        status = study(*command);
+    });
 }
 
 }  // namespace raypool::cli

@@ -165,6 +165,7 @@ class Compiler {
         row.value[Row::kMaterial] = static_cast<Scalar>(material.kind);
         if (material.kind == Material::Kind::Dielectric) {
             row.value[Row::kParameter] = static_cast<Scalar>(material.ior);
+            out_.max_albedo = 1;
             return row;
         }
         const Texture& texture = scene_.textures[material.texture_id];
@@ -172,10 +173,9 @@ class Compiler {
         for (int i = 0; i < 3; ++i) row.value[Row::kColour + i] = static_cast<Scalar>(texture.even[i]);
         row.value[Row::kTexture] = static_cast<Scalar>(texture.kind);
         row.value[Row::kTextureRow] = static_cast<Scalar>(material.texture_id);
-        if (material.kind == Material::Kind::Emissive) {
-            const double brightest = texture.image ? 1 : std::max(texture.even.maxCoeff(), texture.odd.maxCoeff());
-            out_.max_radiance = std::max(out_.max_radiance, brightest);
-        }
+        const double brightest = texture.image ? 1 : std::max(texture.even.maxCoeff(), texture.odd.maxCoeff());
+        double& most = material.kind == Material::Kind::Emissive ? out_.max_radiance : out_.max_albedo;
+        most = std::max(most, brightest);
         return row;
     }
 

@@ -4,6 +4,7 @@
 /// scene.h. A primitive's id counts spheres, then quads, then planes.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -105,6 +106,7 @@ struct CompiledScene {
     Camera<Scalar> camera;
     Sky<Scalar> sky;
     double max_radiance = 0;  ///< no path carries more to the image in any channel
+    double max_albedo = 0;    ///< no hit leaves a path more of its throughput in any channel
 
     std::vector<SurfaceRow<Scalar>> surfaces;  ///< by primitive id
     std::vector<TextureRow<Scalar>> textures;  ///< by kTextureRow
@@ -121,6 +123,11 @@ struct CompiledScene {
     /// For a register of rays against one box or shape.
     SphereTree<kStreamTreeWidth> sphere_stream_tree;
     QuadTree<kStreamTreeWidth> quad_stream_tree;
+
+    /// Radiance that a limit of depth cuts off a pixel, on average over its paths: at most this in any channel.
+    [[nodiscard]] double truncation_bound(std::int32_t depth) const {
+        return max_radiance * std::pow(max_albedo, depth);
+    }
 
     [[nodiscard]] std::int64_t pixel_count() const { return width * height; }
     [[nodiscard]] std::size_t bytes() const;  ///< of all tables

@@ -13,6 +13,7 @@
 #include "core/compiled_scene.h"
 #include "core/framebuffer.h"
 #include "core/path.h"
+#include "core/random.h"
 
 namespace raypool {
 
@@ -42,8 +43,12 @@ struct RenderSettings {
     std::int64_t first_sample = 0;  ///< samples [first_sample, end_sample) of every pixel
     std::int64_t end_sample = 1;    ///< at most 2^31 - 1
     std::int32_t depth = 50;        ///< most segments of a path, up to path_step::kMostBounces; 0 makes a black image
+    /// Only these pixels, in rising order (row * width + column); all where null.
+    const std::vector<std::uint32_t>* pixels = nullptr;
     std::uint64_t seed = 0;
+    Sampler sampler = Sampler::Independent;
     int split_depth = 0;  ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits
+    bool roulette = false;  ///< end paths that carry little by chance, without bias (core/shade.h)
     int threads = 1;
     LoopSchedule schedule;
     Grain grain;
@@ -87,6 +92,16 @@ struct alignas(64) ThreadWork {
     double busy_s = 0;                 ///< working
     double processor_s = 0;            ///< on a processor meanwhile; what waits by spinning at barriers is on one too
     double wait_s = 0;                 ///< waiting for the others
+
+    void add(const ThreadWork& later) {
+        paths += later.paths;
+        segments += later.segments;
+        box_tests += later.box_tests;
+        primitive_tests += later.primitive_tests;
+        busy_s += later.busy_s;
+        processor_s += later.processor_s;
+        wait_s += later.wait_s;
+    }
 };
 
 struct RenderReport {
@@ -97,6 +112,8 @@ struct RenderReport {
     std::size_t record_bytes = 0;   ///< of a wavefront engine: moved in and out of the pool by a record
     std::size_t pool_bytes = 0;     ///< of a wavefront engine: all pools, streams and accumulators at their largest
 
+    /// Takes in a later render into the same framebuffer.
+    void add(const RenderReport& later);
     [[nodiscard]] std::int64_t paths() const { return total(&ThreadWork::paths); }
     [[nodiscard]] std::int64_t segments() const { return total(&ThreadWork::segments); }
     [[nodiscard]] std::int64_t total(std::int64_t ThreadWork::*figure) const {
@@ -122,6 +139,17 @@ class Engine {
     virtual RenderReport render(const CompiledScene<double>& scene, const RenderSettings& settings,
                                 Framebuffer& framebuffer) const = 0;
 };
+
+/// The paths that a render will follow.
+template <class Scalar>
+std::int64_t path_count(const CompiledScene<Scalar>& scene, const RenderSettings& settings) {
+    const auto pixels =
+        settings.pixels == nullptr ? scene.pixel_count() : static_cast<std::int64_t>(settings.pixels->size());
+    return pixels * (settings.end_sample - settings.first_sample);
+}
+
+/// What engines refuse alike, as an InputError.
+void check_settings(const RenderSettings& settings, const Framebuffer& framebuffer);
 
 /// Makes the calling thread treat denormal numbers as zero while it lives; engines hold one in every thread. A path
 /// whose throughput fades would otherwise cost hundreds of times more for light nobody can see.

@@ -20,7 +20,8 @@ constexpr double kLeastMaxRadiance = 0x1p-20;  ///< a black scene still has a st
 FixedPoint FixedPoint::make(std::int64_t spp, double max_radiance) {
     const int limit_bits = ceil_log2(std::max(max_radiance, kLeastMaxRadiance)) + 1;
     const int spp_bits = ceil_log2(static_cast<double>(std::max<std::int64_t>(spp, 1)));
-    return {62 - limit_bits - spp_bits, std::ldexp(1.0, limit_bits)};
+    // Squares: three channels, each below 2^(2 limit_bits), times spp, stay below 2^62.
+    return {62 - limit_bits - spp_bits, std::ldexp(1.0, limit_bits), 60 - 2 * limit_bits - spp_bits};
 }
 
 FixedRgb SampleConverter::convert_bad(const Eigen::Vector3d& radiance) {
@@ -38,13 +39,19 @@ FixedRgb SampleConverter::convert_bad(const Eigen::Vector3d& radiance) {
     return fixed;
 }
 
-Framebuffer::Framebuffer(std::int64_t width, std::int64_t height, const FixedPoint& fixed)
-    : width_(width), height_(height), fixed_(fixed), sums_(static_cast<std::size_t>(3 * width * height)) {}
+Framebuffer::Framebuffer(std::int64_t width, std::int64_t height, const FixedPoint& fixed, Moments moments)
+    : width_(width),
+      height_(height),
+      fixed_(fixed),
+      sums_(static_cast<std::size_t>(3 * width * height)),
+      squares_(moments == Moments::Second ? static_cast<std::size_t>(width * height) : 0) {}
 
 std::string Framebuffer::hash() const {
     const std::array<std::int64_t, 3> shape{width_, height_, fixed_.fraction_bits};
     const XXH64_hash_t seed = XXH3_64bits(shape.data(), sizeof(shape));
-    return fmt::format("{:016x}", XXH3_64bits_withSeed(sums_.data(), sums_.size() * sizeof(std::int64_t), seed));
+    const XXH64_hash_t first = XXH3_64bits_withSeed(sums_.data(), sums_.size() * sizeof(std::int64_t), seed);
+    if (!has_squares()) return fmt::format("{:016x}", first);
+    return fmt::format("{:016x}", XXH3_64bits_withSeed(squares_.data(), squares_.size() * sizeof(std::int64_t), first));
 }
 
 Image Framebuffer::image(std::int64_t sample_count) const {
@@ -52,6 +59,14 @@ Image Framebuffer::image(std::int64_t sample_count) const {
     const double scale = 1 / (fixed_.scale() * static_cast<double>(std::max<std::int64_t>(sample_count, 1)));
     std::transform(sums_.begin(), sums_.end(), image.rgb.begin(),
                    [scale](std::int64_t sum) { return static_cast<float>(static_cast<double>(sum) * scale); });
+    return image;
+}
+
+Image Framebuffer::image(std::span<const std::int32_t> sample_counts) const {
+    Image image(width_, height_);
+    for (std::size_t i = 0; i < sums_.size(); ++i)
+        image.rgb[i] = static_cast<float>(static_cast<double>(sums_[i]) /
+                                          (fixed_.scale() * static_cast<double>(sample_counts[i / 3])));
     return image;
 }
 

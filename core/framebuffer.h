@@ -3,6 +3,8 @@
 /// Integer addition is exact and has no order, so any engine, schedule or thread count that adds the same samples makes
 /// the same bits. Not synchronised: whoever adds must own the pixel, or add atomically to sums().
 /// The step is 2^-k with k chosen so that no render can overflow: spp samples of the scene's greatest radiance fit.
+/// On request it also keeps the sum of squares of the samples of each pixel, as exact and as free of order: the second
+/// moment, from which adaptive.h estimates what error is left.
 #pragma once
 
 #include <array>
@@ -41,13 +43,24 @@ struct FixedPoint {
     /// For up to `spp` samples a pixel, each channel at most max_radiance.
     static FixedPoint make(std::int64_t spp, double max_radiance);
 
+    /// The step of a sum of squares is 2^-square_bits: `spp` samples of three channels at the limit fit.
+    int square_bits = 0;
+
+    bool operator==(const FixedPoint&) const = default;
     [[nodiscard]] double scale() const { return std::ldexp(1.0, fraction_bits); }
+    [[nodiscard]] double square_scale() const { return std::ldexp(1.0, square_bits); }
 };
+
+/// Whether a framebuffer keeps second moments.
+enum class Moments : bool { First, Second };
 
 /// Turns samples into integers, keeping an account of bad ones. One per thread.
 class SampleConverter {
   public:
-    explicit SampleConverter(const FixedPoint& fixed) : scale_(fixed.scale()), limit_(fixed.limit) {}
+    explicit SampleConverter(const FixedPoint& fixed)
+        : scale_(fixed.scale()),
+          limit_(fixed.limit),
+          square_scale_(std::ldexp(1.0, fixed.square_bits - 2 * fixed.fraction_bits)) {}
 
     /// Rounds to nearest. Zero for a sample that is not finite.
     template <class Scalar>
@@ -61,6 +74,13 @@ class SampleConverter {
         }
         return fixed;
     }
+    /// r^2 + g^2 + b^2 of a whole sample, for the sum of squares. A function of the integers, and so the same for all.
+    [[nodiscard]] std::int64_t square(const FixedRgb& sample) const {
+        const double r = static_cast<double>(sample[0]);
+        const double g = static_cast<double>(sample[1]);
+        const double b = static_cast<double>(sample[2]);
+        return std::llrint((r * r + g * g + b * b) * square_scale_);
+    }
     [[nodiscard]] const SampleAudit& audit() const { return audit_; }
 
   private:
@@ -68,12 +88,13 @@ class SampleConverter {
 
     double scale_;
     double limit_;
+    double square_scale_;
     SampleAudit audit_;
 };
 
 class Framebuffer {
   public:
-    Framebuffer(std::int64_t width, std::int64_t height, const FixedPoint& fixed);
+    Framebuffer(std::int64_t width, std::int64_t height, const FixedPoint& fixed, Moments moments = Moments::First);
 
     [[nodiscard]] std::int64_t width() const { return width_; }
     [[nodiscard]] std::int64_t height() const { return height_; }
@@ -82,20 +103,29 @@ class Framebuffer {
     void add(std::int64_t pixel, const FixedRgb& sample) {
         for (int i = 0; i < 3; ++i) sums_[static_cast<std::size_t>(3 * pixel + i)] += sample[i];
     }
+    /// Only where it keeps second moments.
+    void add_square(std::int64_t pixel, std::int64_t square) { squares_[static_cast<std::size_t>(pixel)] += square; }
+    [[nodiscard]] bool has_squares() const { return !squares_.empty(); }
+    /// One a pixel; empty without second moments.
+    [[nodiscard]] std::span<std::int64_t> squares() { return squares_; }
+    [[nodiscard]] std::span<const std::int64_t> squares() const { return squares_; }
     [[nodiscard]] std::span<std::int64_t> sums() { return sums_; }
     [[nodiscard]] std::span<const std::int64_t> sums() const { return sums_; }
 
-    /// 16 hexadecimal digits over the size, the step and every sum (XXH3).
+    /// 16 hexadecimal digits over the size, the step, every sum and, where kept, every sum of squares (XXH3).
     [[nodiscard]] std::string hash() const;
 
     /// The mean of `sample_count` samples a pixel, linear radiance.
     [[nodiscard]] Image image(std::int64_t sample_count) const;
+    /// The same where each pixel has a number of samples of its own, none of them 0.
+    [[nodiscard]] Image image(std::span<const std::int32_t> sample_counts) const;
 
   private:
     std::int64_t width_;
     std::int64_t height_;
     FixedPoint fixed_;
     std::vector<std::int64_t> sums_;
+    std::vector<std::int64_t> squares_;
 };
 
 }  // namespace raypool

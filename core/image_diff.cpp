@@ -16,13 +16,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-void check_same_size(const Image& a, const Image& b) {
-    if (a.width != b.width || a.height != b.height) {
-        throw InputError(fmt::format("images to compare must have the same size, got {} x {} and {} x {}", a.width,
-                                     a.height, b.width, b.height));
-    }
-}
-
 bool same_bits(float a, float b) {
     return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
 }
@@ -64,6 +57,13 @@ std::array<double, 3> channel_means(const Image& image) {
 
 }  // namespace
 
+void check_same_size(const Image& a, const Image& b) {
+    if (a.width != b.width || a.height != b.height) {
+        throw InputError(fmt::format("images to compare must have the same size, got {} x {} and {} x {}", a.width,
+                                     a.height, b.width, b.height));
+    }
+}
+
 ImageDiff compare_images(const Image& a, const Image& b) {
     check_same_size(a, b);
     ImageDiff diff;
@@ -85,7 +85,8 @@ ImageDiff compare_images(const Image& a, const Image& b) {
         if (i % 3 == 2) diff.differing_pixels += std::exchange(pixel_differs, false) ? 1 : 0;
     }
     const auto count = static_cast<double>(a.rgb.size());
-    diff.rmse = std::sqrt(sum / count);
+    diff.mse = sum / count;
+    diff.rmse = std::sqrt(diff.mse);
     diff.rel_mse = relative_sum / count;
     diff.psnr = -20 * std::log10(diff.rmse);
     return diff;

@@ -16,7 +16,8 @@ struct ImageDiff {
     std::array<double, 3> mean_a{};  ///< mean of each channel
     std::array<double, 3> mean_b{};
     std::int64_t differing_pixels = 0;  ///< pixels with any bit different
-    double rmse = 0;                    ///< root of the mean squared error
+    double mse = 0;                     ///< mean squared error
+    double rmse = 0;                    ///< its root
     double rel_mse = 0;                 ///< mean of (a - b)^2 / (b^2 + 1 % of the mean of b^2); b is the reference
     double psnr = 0;                    ///< decibels for a peak of 1; infinite for equal values
     double max_abs = 0;
@@ -24,6 +25,9 @@ struct ImageDiff {
 };
 
 /// InputError if the sizes differ.
+void check_same_size(const Image& a, const Image& b);
+
+/// InputError as above.
 ImageDiff compare_images(const Image& a, const Image& b);
 
 /// The error of each pixel (root mean square over its channels) in the colours of "inferno", on a logarithmic scale

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
+#include <span>
+#include <vector>
 
 #include "core/engine.h"
 #include "core/error.h"
@@ -17,6 +19,33 @@ namespace raypool {
 struct PixelRange {
     std::int64_t x_begin, x_end, y_begin, y_end;
 };
+
+/// RenderSettings::pixels, asked in the order of a loop over the image: each thread has one and walks it along.
+class ChosenPixels {
+  public:
+    explicit ChosenPixels(const std::vector<std::uint32_t>* pixels) : pixels_(pixels) {}
+    bool contains(std::int64_t pixel) {
+        if (pixels_ == nullptr) return true;
+        const std::vector<std::uint32_t>& list = *pixels_;
+        const auto id = static_cast<std::uint32_t>(pixel);
+        const bool is_astray = (next_ < list.size() && list[next_] < id) || (next_ > 0 && list[next_ - 1] >= id);
+        if (is_astray) next_ = static_cast<std::size_t>(std::lower_bound(list.begin(), list.end(), id) - list.begin());
+        const bool is_chosen = next_ < list.size() && list[next_] == id;
+        if (is_chosen) ++next_;
+        return is_chosen;
+    }
+
+  private:
+    const std::vector<std::uint32_t>* pixels_;
+    std::size_t next_ = 0;  ///< what is before it is less than the pixel asked for last, or is that
+};
+
+/// Those of a rising list of pixels that lie in [begin, end).
+inline std::span<const std::uint32_t> chosen_between(const std::vector<std::uint32_t>& pixels, std::int64_t begin,
+                                                     std::int64_t end) {
+    const auto first = std::lower_bound(pixels.begin(), pixels.end(), begin);
+    return {first, std::lower_bound(first, pixels.end(), end)};
+}
 
 /// The image cut into pixels, lines or tiles, numbered along lines from the top left.
 class WorkItems {

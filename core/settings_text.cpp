@@ -72,6 +72,16 @@ std::string to_string(const Grain& grain) {
     return fmt::format("tile:{}", grain.tile);
 }
 
+Sampler parse_sampler(std::string_view text) {
+    if (text == "independent") return Sampler::Independent;
+    if (text == "sobol") return Sampler::Sobol;
+    throw InputError(fmt::format("--sampler: must be independent or sobol, got {}", text));
+}
+
+std::string to_string(Sampler sampler) {
+    return sampler == Sampler::Sobol ? "sobol" : "independent";
+}
+
 LoopSchedule default_schedule() {
     if (std::getenv("OMP_SCHEDULE") == nullptr) return {LoopSchedule::Kind::Dynamic, 0};
     omp_sched_t kind;

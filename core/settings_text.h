@@ -1,5 +1,5 @@
-/// Settings of the loop as texts, the way users write them: `dynamic,4`, `tile:16`. A text that makes no sense is an
-/// InputError that names the command's option.
+/// Settings of a render as texts, the way users write them: `dynamic,4`, `tile:16`, `sobol`. A text that makes no sense
+/// is an InputError that names the command's option.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +18,10 @@ std::string to_string(const LoopSchedule& schedule);
 /// pixel, line or tile:N.
 Grain parse_grain(std::string_view text);
 std::string to_string(const Grain& grain);
+
+/// independent or sobol.
+Sampler parse_sampler(std::string_view text);
+std::string to_string(Sampler sampler);
 
 /// What OMP_SCHEDULE says, and dynamic where it says nothing: equal lines are not equal work.
 LoopSchedule default_schedule();

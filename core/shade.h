@@ -119,6 +119,24 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const CompiledScene<ScalarOf<Real>>& sc
     return colour;
 }
 
+/// Hits after which a path takes part in Russian roulette.
+inline constexpr std::uint32_t kHitsBeforeRoulette = 3;
+
+/// Ends paths by chance and makes up for it in those that go on (Arvo and Kirk, "Particle Transport and Image
+/// Synthesis", 1990): a path survives with the probability q = min(1, greatest channel of its throughput) and is
+/// divided by q, so that its expectation stays. q is rounded up to a multiple of 2^-24, the step of `random`: then
+/// random < q has exactly that probability. Returns who survives.
+template <class Real>
+RAYPOOL_INLINE Mask<Real> survives_roulette(Vec3<Real>& throughput, const Real& random, const Mask<Real>& is_played) {
+    constexpr float kSteps = 1U << 24U;
+    const Real most = max(max(throughput[0], throughput[1]), throughput[2]);
+    const Real q = -floor(-most * Real(kSteps)) * Real(1 / kSteps);
+    const Mask<Real> is_chance = is_played && q < Real(1) && q > Real(0);
+    const Real divisor = select(is_chance, q, Real(1));
+    for (int i = 0; i < 3; ++i) throughput[i] = throughput[i] / divisor;
+    return !is_chance || random < q;
+}
+
 /// Whether glass may send a path both ways instead of drawing one of them.
 enum class Splitting : bool { Off, On };
 
@@ -140,12 +158,13 @@ struct Scattered {
 
 /// Scatters rays that hit primitive `primitive_id` (valid in every lane, also those the caller ignores) at distance t.
 /// `step` is the path's (path_step). A path that can carry nothing any more is not alive. With Splitting::On, the first
-/// `split_depth` hits on glass split a path in two, weighted by Fresnel's reflectance.
+/// `split_depth` hits on glass split a path in two, weighted by Fresnel's reflectance. With `roulette`, paths end by
+/// chance after kHitsBeforeRoulette hits; both branches of a split play with one number.
 template <SceneNeeds needs, class Real, Splitting splitting = Splitting::Off>
 RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scene, const Ray<Real>& ray, const Real& t,
                                        const Int<Real>& primitive_id, const Vec3<Real>& throughput,
                                        const PathKey<Real>& key, const Uint32<Real>& step, const RandomSeed& seed,
-                                       int split_depth = 0) {
+                                       int split_depth = 0, bool roulette = false) {
     using S = ScalarOf<Real>;
     using Row = SurfaceRow<S>;
     Real row[Row::kColumns];
@@ -220,6 +239,16 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
     out.is_alive = carries_light(out.throughput) && !(is_absorbed || out.is_emitter);
     if constexpr (splitting == Splitting::On) {
         out.is_reflected_alive = out.is_split && carries_light(out.reflected_throughput);
+    }
+    if (roulette) [[unlikely]] {
+        const Mask<Real> is_played =
+            from_uint32<Real>(path_step::bounce<Uint32<Real>>(step)) >= Real(static_cast<S>(kHitsBeforeRoulette - 1));
+        const Mask<Real> survives = survives_roulette<Real>(out.throughput, random[3], is_played && !out.is_emitter);
+        out.is_alive = out.is_alive && survives;
+        if constexpr (splitting == Splitting::On) {
+            const Mask<Real> survives_too = survives_roulette<Real>(out.reflected_throughput, random[3], is_played);
+            out.is_reflected_alive = out.is_reflected_alive && survives_too;
+        }
     }
     return out;
 }

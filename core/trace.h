@@ -6,6 +6,7 @@
 /// Thread safety: begin() and what reads are for one thread alone; a lane is for the thread that it belongs to.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -62,10 +63,11 @@ class Trace {
         std::int64_t dropped_ = 0;
     };
 
-    /// Forgets what there was; times count from `start_s` on.
+    /// A render in `threads` threads begins. Times count from the first one; the later passes of an image that is
+    /// rendered in several go on in the same lanes.
     void begin(double start_s, int threads) {
-        start_s_ = start_s;
-        lanes_.assign(static_cast<std::size_t>(threads), Lane());
+        if (lanes_.empty()) start_s_ = start_s;
+        lanes_.resize(std::max(lanes_.size(), static_cast<std::size_t>(threads)));
     }
     Lane& lane(int thread) { return lanes_[static_cast<std::size_t>(thread)]; }
     [[nodiscard]] const std::vector<Lane>& lanes() const { return lanes_; }

@@ -18,7 +18,7 @@
 namespace raypool::recursive {
 
 /// Bytes of stack that one bounce takes, measured: a ray inside a white sphere bounces for ever.
-template <SceneNeeds needs, class Scalar, class Work, Splitting splitting>
+template <SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules>
 std::size_t stack_bytes_per_bounce() {
     Scene inside_sphere;
     inside_sphere.width = inside_sphere.height = 1;
@@ -27,9 +27,10 @@ std::size_t stack_bytes_per_bounce() {
     inside_sphere.spheres.emplace_back().radius = 10;
     const CompiledScene<Scalar> scene = compile<Scalar>(inside_sphere);
     const auto deepest = [&](std::int32_t depth) {
-        Tracer<needs, Scalar, Work, splitting> tracer(scene, random_seed(0), depth, 0, FixedPoint::make(1, 1));
-        FixedRgb sum{};
-        tracer.template sample<Form::Recursive>(0, 0, 0, sum);
+        RenderSettings settings;
+        settings.depth = depth;
+        Tracer<needs, Scalar, Work, splitting, rules> tracer(scene, settings, FixedPoint::make(1, 1));
+        tracer.template sample<Form::Recursive>(0, 0, 0);
         return tracer.deepest_stack();
     };
     constexpr int kBounces = 64;
@@ -40,13 +41,13 @@ std::size_t stack_bytes_per_bounce() {
 inline constexpr std::size_t kStackReserve = 64 * 1024;
 
 /// Refuses a depth that the stack of one of the `threads` threads could not hold.
-template <SceneNeeds needs, class Scalar, class Work, Splitting splitting>
+template <SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules>
 void check_stack(std::int32_t depth, int threads) {
     std::size_t left = std::numeric_limits<std::size_t>::max();
 #pragma omp parallel num_threads(threads) reduction(min : left)
     left = stack_bytes_left();
 
-    const std::size_t per_bounce = stack_bytes_per_bounce<needs, Scalar, Work, splitting>();
+    const std::size_t per_bounce = stack_bytes_per_bounce<needs, Scalar, Work, splitting, rules>();
     const std::size_t held = left < kStackReserve ? 0 : (left - kStackReserve) / per_bounce;
     if (depth == 0 || static_cast<std::size_t>(depth) < held) return;
     constexpr std::size_t kMegabyte = 1024 * 1024;
@@ -58,18 +59,21 @@ void check_stack(std::int32_t depth, int threads) {
                     depth, wanted, per_bounce, held == 0 ? 0 : held - 1, wanted * 1024, wanted));
 }
 
-template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting = Splitting::Off>
+template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting = Splitting::Off,
+          Rules rules = Rules::Any>
 RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {
+    check_settings(settings, framebuffer);
     if constexpr (form == Form::Recursive) {
-        check_stack<needs, Scalar, Work, splitting>(settings.depth, settings.threads);
+        check_stack<needs, Scalar, Work, splitting, rules>(settings.depth, settings.threads);
     }
     const WorkItems items(scene.width, scene.height, settings.grain);
     return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
-        Tracer<needs, Scalar, Work, splitting> tracer(scene, random_seed(settings.seed), settings.depth,
-                                                      settings.split_depth, framebuffer.fixed_point());
+        Tracer<needs, Scalar, Work, splitting, rules> tracer(scene, settings, framebuffer.fixed_point());
         ProgressBatch progress(settings.progress);
         ItemLog log(settings, omp_get_thread_num());
         PixelCost cost(settings.cost_image);
+        ChosenPixels chosen(settings.pixels);
+        const bool has_squares = framebuffer.has_squares();
 
 #pragma omp for schedule(runtime) nowait
         for (std::int64_t item = 0; item < items.count(); ++item) {
@@ -77,12 +81,19 @@ RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& se
             log.start(range);
             for (std::int64_t y = range.y_begin; y < range.y_end; ++y) {
                 for (std::int64_t x = range.x_begin; x < range.x_end; ++x) {
+                    const std::int64_t pixel = y * scene.width + x;
+                    if (!chosen.contains(pixel)) continue;
                     FixedRgb sum{};
+                    std::int64_t square = 0;
                     cost.start(tracer);
-                    for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s)
-                        tracer.template sample<form>(x, y, s, sum);
-                    cost.stop(tracer, y * scene.width + x);
-                    framebuffer.add(y * scene.width + x, sum);
+                    for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s) {
+                        const FixedRgb& sample = tracer.template sample<form>(x, y, s);
+                        for (int i = 0; i < 3; ++i) sum[i] += sample[i];
+                        if (has_squares) square += tracer.square(sample);
+                    }
+                    cost.stop(tracer, pixel);
+                    framebuffer.add(pixel, sum);
+                    if (has_squares) framebuffer.add_square(pixel, square);
                     work.paths += settings.end_sample - settings.first_sample;
                     progress.add(settings.end_sample - settings.first_sample);
                 }
@@ -105,7 +116,9 @@ RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& se
     if (settings.count_work || counts_for_image)
         return render<form, kEverything, Scalar, WorkCount>(scene, settings, framebuffer);
     return dispatch_needs(scene.needs, [&]<SceneNeeds needs>() {
-        return render<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);
+        return are_plain(settings) ? render<form, needs, Scalar, NoWorkCount, Splitting::Off, Rules::Plain>(
+                                         scene, settings, framebuffer)
+                                   : render<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);
     });
 }
 

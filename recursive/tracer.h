@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/framebuffer.h"
+#include "core/engine.h"
 #include "core/shade.h"
 #include "core/traverse.h"
 #include "recursive/stack.h"
@@ -30,21 +30,34 @@ struct Path {
 /// What follows a segment.
 enum class Next : std::uint8_t { End, OnePath, TwoPaths };
 
+/// What is decided when compiling: independent numbers and no roulette (whose branches and registers this engine would
+/// feel, and the paper's tracer has not), or whatever the settings say.
+enum class Rules : bool { Plain, Any };
+
+constexpr bool are_plain(const RenderSettings& settings) {
+    return settings.sampler == Sampler::Independent && !settings.roulette;
+}
+
 /// Traces paths for one thread. `Work` counts box and primitive tests, or nothing.
-template <SceneNeeds needs, class Scalar, class Work, Splitting splitting>
+template <SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules = Rules::Any>
 class Tracer {
   public:
-    Tracer(const CompiledScene<Scalar>& scene, RandomSeed seed, std::int32_t depth, int split_depth,
-           const FixedPoint& fixed)
-        : scene_(scene), seed_(seed), depth_(depth), split_depth_(split_depth), converter_(fixed) {}
+    /// Of the settings, it follows those of paths: depth, seed, sampler, split_depth, roulette.
+    Tracer(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const FixedPoint& fixed)
+        : scene_(scene),
+          seed_(random_seed(settings.seed, settings.sampler)),
+          depth_(settings.depth),
+          split_depth_(settings.split_depth),
+          roulette_(settings.roulette),
+          converter_(fixed) {}
 
-    /// Adds one sample to `sum`.
+    /// One sample, whole.
     template <Form form>
-    void sample(std::int64_t x, std::int64_t y, std::int64_t sample_id, FixedRgb& sum) {
+    const FixedRgb& sample(std::int64_t x, std::int64_t y, std::int64_t sample_id) {
         const PathKey<Scalar> key{static_cast<std::uint32_t>(y * scene_.width + x),
                                   static_cast<std::uint32_t>(sample_id)};
         const Ray<Scalar> ray = camera_ray<needs, Scalar>(scene_.camera, static_cast<Scalar>(x), static_cast<Scalar>(y),
-                                                          key.pixel, key.sample, seed_);
+                                                          key.pixel, key.sample, seed());
         sum_ = {};
         const Path<Scalar> path{ray, vec3<Scalar>(1, 1, 1), key, kNoPrimitive, 0};
         if constexpr (form == Form::Recursive) {
@@ -52,11 +65,12 @@ class Tracer {
         } else {
             iterate(path);
         }
-        for (int i = 0; i < 3; ++i) sum[i] += sum_[i];
+        return sum_;
     }
 
     [[nodiscard]] std::int64_t segments() const { return segments_; }
     [[nodiscard]] const Work& work() const { return work_; }
+    [[nodiscard]] std::int64_t square(const FixedRgb& sample) const { return converter_.square(sample); }
     [[nodiscard]] const SampleAudit& audit() const { return converter_.audit(); }
     [[nodiscard]] std::uintptr_t deepest_stack() const { return deepest_stack_; }
 
@@ -99,8 +113,9 @@ class Tracer {
         if (hit.primitive_id == kNoPrimitive) {
             return finish(path.throughput.cwiseProduct(sky_radiance<Scalar>(scene_.sky, path.ray.direction)));
         }
-        const Scattered<Scalar> out = scatter<needs, Scalar, splitting>(
-            scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key, path.step, seed_, split_depth_);
+        const Scattered<Scalar> out =
+            scatter<needs, Scalar, splitting>(scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key,
+                                              path.step, seed(), split_depth_, rules == Rules::Any && roulette_);
         if (out.is_emitter) return finish(out.throughput);
         path.ray.origin = out.origin;
         path.ray.direction = out.direction;
@@ -122,6 +137,11 @@ class Tracer {
         return out.is_alive ? Next::OnePath : Next::End;
     }
 
+    /// The sampler of plain rules is known to the compiler.
+    [[nodiscard]] RandomSeed seed() const {
+        return {seed_.low, seed_.high, rules == Rules::Plain ? Sampler::Independent : seed_.sampler};
+    }
+
     Next finish(const Vec3<Scalar>& radiance) {
         const FixedRgb fixed = converter_.template convert<Scalar>(radiance);
         for (int i = 0; i < 3; ++i) sum_[i] += fixed[i];
@@ -132,6 +152,7 @@ class Tracer {
     RandomSeed seed_;
     std::int32_t depth_;
     int split_depth_;
+    bool roulette_;
     std::int64_t segments_ = 0;
     FixedRgb sum_{};
     SampleConverter converter_;

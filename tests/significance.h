@@ -4,10 +4,12 @@
 /// single test gets its share by Sidak's correction. Seeds are fixed, so a test that passes once passes always.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <vector>
 
 namespace raypool::test {
 
@@ -63,6 +65,20 @@ inline double p_value_of_uniform_counts(std::span<const std::int64_t> counts) {
     }
     return p_value_of_chi_square(statistic, static_cast<double>(counts.size()) - 1);
 }
+
+/// Counts pairs of numbers in [0, 1] in a grid of equal cells.
+class Grid {
+  public:
+    void add(double u, double v) { ++counts_[cell(u) * kEdge + cell(v)]; }
+    [[nodiscard]] double p_value() const { return p_value_of_uniform_counts(counts_); }
+
+  private:
+    static constexpr std::size_t kEdge = 24;
+    static std::size_t cell(double u) {
+        return std::min(static_cast<std::size_t>(u * static_cast<double>(kEdge)), kEdge - 1);
+    }
+    std::vector<std::int64_t> counts_ = std::vector<std::int64_t>(kEdge * kEdge);
+};
 
 /// Pearson's correlation of pairs, and its p-value where the two are independent.
 class Correlation {

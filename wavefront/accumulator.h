@@ -28,15 +28,18 @@ class AccumulatorBase {
 };
 
 /// Where the three sums of a pixel are: side by side, as in the framebuffer, or each in a plane of its own. To compare
-/// them is the paper's "interleaved against three planar framebuffers".
+/// them is the paper's "interleaved against three planar framebuffers". The sums of squares, where the framebuffer
+/// keeps them (null elsewhere), are a plane always.
 struct Interleaved {
     std::int64_t* sums;
+    std::int64_t* squares;
     [[nodiscard]] std::int64_t& at(std::size_t pixel, int k) const {
         return sums[3 * pixel + static_cast<std::size_t>(k)];
     }
 };
 struct Planar {
     std::int64_t* sums;
+    std::int64_t* squares;
     std::size_t pixel_count;
     [[nodiscard]] std::int64_t& at(std::size_t pixel, int k) const {
         return sums[static_cast<std::size_t>(k) * pixel_count + pixel];
@@ -49,24 +52,31 @@ enum class Addition : bool { Plain, Atomic };
 /// Adds deposits, as integers, to sums in either layout.
 template <Addition addition, class Layout, class Scalar>
 void add_integers(const Layout& layout, const Deposits<Scalar>& deposits, SampleConverter& converter) {
+    const auto add = [](std::int64_t& sum, std::int64_t value) {
+        if constexpr (addition == Addition::Atomic) {
+            std::atomic_ref(sum).fetch_add(value, std::memory_order_relaxed);
+        } else {
+            sum += value;
+        }
+    };
     for (std::size_t i = 0; i < deposits.count(); ++i) {
         const FixedRgb fixed = converter.convert<Scalar>(deposits.radiance(i));
-        for (int k = 0; k < 3; ++k) {
-            std::int64_t& sum = layout.at(deposits.pixel(i), k);
-            if constexpr (addition == Addition::Atomic) {
-                std::atomic_ref(sum).fetch_add(fixed[static_cast<std::size_t>(k)], std::memory_order_relaxed);
-            } else {
-                sum += fixed[static_cast<std::size_t>(k)];
-            }
-        }
+        for (int k = 0; k < 3; ++k) add(layout.at(deposits.pixel(i), k), fixed[static_cast<std::size_t>(k)]);
+        // A path that is not split deposits once, so that a deposit is a whole sample.
+        if (layout.squares != nullptr) add(layout.squares[deposits.pixel(i)], converter.square(fixed));
     }
+}
+
+/// The framebuffer's own sums of squares, or null.
+inline std::int64_t* squares_of(Framebuffer& framebuffer) {
+    return framebuffer.has_squares() ? framebuffer.squares().data() : nullptr;
 }
 
 /// Adds to the framebuffer itself.
 template <class Scalar, Addition addition>
 class InterleavedInt64 : public AccumulatorBase<Scalar> {
   public:
-    explicit InterleavedInt64(Framebuffer& framebuffer) : sums_{framebuffer.sums().data()} {}
+    explicit InterleavedInt64(Framebuffer& framebuffer) : sums_{framebuffer.sums().data(), squares_of(framebuffer)} {}
     void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) override {
         add_integers<addition>(sums_, deposits, converter);
     }
@@ -80,13 +90,15 @@ template <class Scalar, Addition addition>
 class PlanarInt64 : public AccumulatorBase<Scalar> {
   public:
     explicit PlanarInt64(Framebuffer& framebuffer)
-        : sums_(framebuffer.sums()), planes_(sums_.size()), planar_{planes_.data(), sums_.size() / 3} {}
+        : sums_(framebuffer.sums()),
+          planes_(sums_.size()),
+          planar_{planes_.data(), squares_of(framebuffer), sums_.size() / 3} {}
     void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) override {
         add_integers<addition>(planar_, deposits, converter);
     }
     void finish() override {
         for (std::size_t pixel = 0; pixel < planar_.pixel_count; ++pixel)
-            for (int k = 0; k < 3; ++k) Interleaved{sums_.data()}.at(pixel, k) += planar_.at(pixel, k);
+            for (int k = 0; k < 3; ++k) Interleaved{sums_.data(), nullptr}.at(pixel, k) += planar_.at(pixel, k);
     }
     [[nodiscard]] std::size_t bytes() const override { return planes_.size() * sizeof(std::int64_t); }
 
@@ -101,22 +113,28 @@ template <class Scalar>
 class PrivateInt64 : public AccumulatorBase<Scalar> {
   public:
     PrivateInt64(Framebuffer& framebuffer, int threads)
-        : sums_(framebuffer.sums()), parts_(static_cast<std::size_t>(threads)) {
-        for (auto& part : parts_) part.resize(sums_.size());
+        : sums_(framebuffer.sums()), squares_(framebuffer.squares()), parts_(static_cast<std::size_t>(threads)) {
+        for (auto& part : parts_) part.resize(sums_.size() + squares_.size());
     }
     void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int thread) override {
-        add_integers<Addition::Plain>(Interleaved{parts_[static_cast<std::size_t>(thread)].data()}, deposits,
+        std::int64_t* part = parts_[static_cast<std::size_t>(thread)].data();
+        add_integers<Addition::Plain>(Interleaved{part, squares_.empty() ? nullptr : part + sums_.size()}, deposits,
                                       converter);
     }
     void finish() override {
-        for (const auto& part : parts_)
+        for (const auto& part : parts_) {
             for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += part[i];
+            for (std::size_t i = 0; i < squares_.size(); ++i) squares_[i] += part[sums_.size() + i];
+        }
     }
-    [[nodiscard]] std::size_t bytes() const override { return parts_.size() * sums_.size() * sizeof(std::int64_t); }
+    [[nodiscard]] std::size_t bytes() const override {
+        return parts_.size() * (sums_.size() + squares_.size()) * sizeof(std::int64_t);
+    }
 
   private:
     std::span<std::int64_t> sums_;
-    std::vector<std::vector<std::int64_t>> parts_;
+    std::span<std::int64_t> squares_;
+    std::vector<std::vector<std::int64_t>> parts_;  ///< a thread's sums, then its squares
 };
 
 /// Atomic additions of floating-point numbers: a compare-and-swap loop. Not reproducible.

@@ -1,11 +1,14 @@
 /// Which camera paths come next: the samples of a range of pixels, numbered pixel by pixel.
 ///
+/// The pixels are all of a range of the image, or a list of chosen ones.
+///
 /// All samples of a pixel come one after the other, so a register of camera rays is as coherent as it can be, and a
 /// range of numbers is a piece of work that can be handed to any thread.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 
 #include "core/loop.h"
 #include "core/path.h"
@@ -33,6 +36,19 @@ class CameraPaths {
         : range_(range), image_width_(image_width), first_sample_(first_sample), samples_(end_sample - first_sample) {
         left_ = (range.x_end - range.x_begin) * (range.y_end - range.y_begin) * samples_;
         seek(0);
+    }
+    /// Of the pixels of a list, which outlives this.
+    CameraPaths(std::span<const std::uint32_t> pixels, std::int64_t image_width, std::int64_t first_sample,
+                std::int64_t end_sample)
+        : CameraPaths(PixelRange{0, static_cast<std::int64_t>(pixels.size()), 0, 1}, image_width, first_sample,
+                      end_sample) {
+        pixels_ = pixels.data();
+    }
+    /// Of all pixels, or those that the settings choose.
+    CameraPaths(const RenderSettings& settings, std::int64_t width, std::int64_t height)
+        : CameraPaths(PixelRange{0, width, 0, height}, width, settings.first_sample, settings.end_sample) {
+        if (settings.pixels != nullptr)
+            *this = CameraPaths(*settings.pixels, width, settings.first_sample, settings.end_sample);
     }
 
     [[nodiscard]] bool is_done() const { return left_ == 0; }
@@ -64,9 +80,10 @@ class CameraPaths {
         lanes.count = count;
         left_ -= count;
         if (sample_ + count <= samples_) {  // all of one pixel
-            lanes.x = Real(static_cast<ScalarOf<Real>>(x_));
-            lanes.y = Real(static_cast<ScalarOf<Real>>(y_));
-            lanes.pixel = Uint32<Real>(static_cast<std::uint32_t>(y_ * image_width_ + x_));
+            const std::int64_t pixel = pixel_at(x_, y_);
+            lanes.x = Real(static_cast<ScalarOf<Real>>(pixels_ == nullptr ? x_ : pixel % image_width_));
+            lanes.y = Real(static_cast<ScalarOf<Real>>(pixels_ == nullptr ? y_ : pixel / image_width_));
+            lanes.pixel = Uint32<Real>(static_cast<std::uint32_t>(pixel));
             lanes.sample = Uint32<Real>(static_cast<std::uint32_t>(first_sample_ + sample_)) + lane_numbers<Real>();
             sample_ += count;
             if (sample_ == samples_) next_pixel();
@@ -87,9 +104,10 @@ class CameraPaths {
                 x = x_, y = y_, sample = sample_;
                 if (++sample_ == samples_) next_pixel();
             }
-            set_lane(lanes.x, i, x);
-            set_lane(lanes.y, i, y);
-            set_lane(lanes.pixel, i, y * image_width_ + x);
+            const std::int64_t pixel = pixel_at(x, y);
+            set_lane(lanes.x, i, pixels_ == nullptr ? x : pixel % image_width_);
+            set_lane(lanes.y, i, pixels_ == nullptr ? y : pixel / image_width_);
+            set_lane(lanes.pixel, i, pixel);
             set_lane(lanes.sample, i, first_sample_ + sample);
         }
     }
@@ -102,6 +120,9 @@ class CameraPaths {
         }
     }
 
+    [[nodiscard]] std::int64_t pixel_at(std::int64_t x, std::int64_t y) const {
+        return pixels_ == nullptr ? y * image_width_ + x : pixels_[x];
+    }
     void next_pixel() {
         sample_ = 0;
         if (++x_ == range_.x_end) {
@@ -121,7 +142,8 @@ class CameraPaths {
         seek(((y_ - range_.y_begin) * width + x_ - range_.x_begin) * samples_ + sample_ + count);
     }
 
-    PixelRange range_;
+    PixelRange range_;                       // of the image, or of the list
+    const std::uint32_t* pixels_ = nullptr;  // the list
     std::int64_t image_width_;
     std::int64_t first_sample_;
     std::int64_t samples_;

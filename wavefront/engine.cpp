@@ -19,7 +19,12 @@ RenderReport render_any(const CompiledScene<Scalar>& scene, const RenderSettings
         throw InputError(
             "--accumulator: owned and owned-planar need --pool-scope thread, since no thread owns a pixel of a shared "
             "pool");
-    const std::int64_t paths = scene.pixel_count() * (settings.end_sample - settings.first_sample);
+    check_settings(settings, framebuffer);
+    const bool adds_reals =
+        pool.accumulator == Accumulator::AtomicFloat || pool.accumulator == Accumulator::AtomicDouble;
+    if (framebuffer.has_squares() && adds_reals)
+        throw InputError("--accumulator: atomic-float and atomic-double keep no squares, which --target-error needs");
+    const std::int64_t paths = path_count(scene, settings);
     if (settings.depth == 0 || paths == 0) {  // no path has a segment
         RenderReport report;
         report.threads.resize(static_cast<std::size_t>(settings.threads));

@@ -23,7 +23,7 @@ RenderReport render(const CompiledScene<ScalarOf<Real>>& scene, const RenderSett
     using Scalar = ScalarOf<Real>;
     const auto accumulator = make_accumulator<Scalar>(pool.accumulator, framebuffer, settings.threads);
     const RenderContext<Scalar> context{
-        scene, settings, pool, random_seed(settings.seed), framebuffer.fixed_point(), *accumulator};
+        scene, settings, pool, random_seed(settings.seed, settings.sampler), framebuffer.fixed_point(), *accumulator};
     const std::size_t capacity =
         std::max<std::size_t>(static_cast<std::size_t>(pool.capacity), std::size_t{1} << settings.split_depth);
     const auto threads = static_cast<std::size_t>(settings.threads);

@@ -83,12 +83,23 @@ RenderReport render_thread_pools(const RenderContext<ScalarOf<Real>>& context, s
     return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
         ThreadPool<needs, Real, Work, splitting> pool(context, capacity, omp_get_thread_num());
         ProgressBatch progress(settings.progress);
+        const auto add = [&](const CameraPaths& paths) {
+            pool.add(paths);
+            progress.add(paths.left());
+        };
 
 #pragma omp for schedule(runtime) nowait
         for (std::int64_t item = 0; item < items.count(); ++item) {
-            const CameraPaths paths(items.range(item), scene.width, settings.first_sample, settings.end_sample);
-            pool.add(paths);
-            progress.add(paths.left());
+            const PixelRange range = items.range(item);
+            if (settings.pixels == nullptr) {
+                add({range, scene.width, settings.first_sample, settings.end_sample});
+            } else {
+                for (std::int64_t y = range.y_begin; y < range.y_end; ++y) {
+                    const auto line = chosen_between(*settings.pixels, y * scene.width + range.x_begin,
+                                                     y * scene.width + range.x_end);
+                    add({line, scene.width, settings.first_sample, settings.end_sample});
+                }
+            }
         }
         pool.drain();
         pool.stages().log().finish();
@@ -103,7 +114,7 @@ RenderReport render_shared_pool(const RenderContext<ScalarOf<Real>>& context, Sh
                                 ThreadRounds& rounds) {
     const auto& scene = context.scene;
     const RenderSettings& settings = context.settings;
-    const CameraPaths image({0, scene.width, 0, scene.height}, scene.width, settings.first_sample, settings.end_sample);
+    const CameraPaths image(settings, scene.width, scene.height);
     PathCounter camera(image.left());
 
     return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {

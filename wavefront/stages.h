@@ -244,9 +244,9 @@ class Stages {
         if (hits == 0) return 0;
 
         const Int<Real> id = select(is_hit, hit.primitive_id, Int<Real>(0));
-        const Scattered<Real> out =
-            scatter<needs, Real, splitting>(context_.scene, record.ray, hit.t, id, record.throughput, record.key,
-                                            record.step, context_.seed, context_.settings.split_depth);
+        const Scattered<Real> out = scatter<needs, Real, splitting>(
+            context_.scene, record.ray, hit.t, id, record.throughput, record.key, record.step, context_.seed,
+            context_.settings.split_depth, context_.settings.roulette);
         if constexpr (needs.emissive) {
             if (const unsigned ends = mask_bits(out.is_emitter) & hits; ends != 0)
                 deposits_.template put<Real>(record.key.pixel, out.throughput, ends);

@@ -35,15 +35,14 @@ CompiledScene<float> inside_sphere() {
 
 void* trace(void* argument) {
     const Task& task = *static_cast<const Task*>(argument);
-    if (task.how == Deep::Recursion) {
-        using Tracer = recursive::Tracer<SceneNeeds{}, float, NoWorkCount, Splitting::Off>;
-        Tracer tracer(task.scene, random_seed(0), task.depth, 0, FixedPoint::make(1, 1));
-        FixedRgb sum{};
-        tracer.sample<recursive::Form::Recursive>(0, 0, 0, sum);
-        return nullptr;
-    }
     RenderSettings settings;
     settings.depth = task.depth;
+    if (task.how == Deep::Recursion) {
+        using Tracer = recursive::Tracer<SceneNeeds{}, float, NoWorkCount, Splitting::Off, recursive::Rules::Plain>;
+        Tracer tracer(task.scene, settings, FixedPoint::make(1, 1));
+        tracer.sample<recursive::Form::Recursive>(0, 0, 0);
+        return nullptr;
+    }
     Framebuffer framebuffer(1, 1, FixedPoint::make(1, 1));
     try {
         if (task.how == Deep::Checked) {

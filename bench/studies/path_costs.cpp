@@ -38,14 +38,12 @@ struct LineLog {
 
 LineLog record_line(const CompiledScene<float>& scene, const RenderSettings& settings, std::int64_t y) {
     recursive::Tracer<kEverything, float, SegmentLog, Splitting::Off> tracer(
-        scene, random_seed(settings.seed), settings.depth, 0,
-        FixedPoint::make(settings.end_sample, scene.max_radiance));
+        scene, settings, FixedPoint::make(settings.end_sample, scene.max_radiance));
     LineLog line;
     for (std::int64_t x = 0; x < scene.width; ++x) {
         for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s) {
             const std::int64_t before = tracer.segments();
-            FixedRgb sum{};
-            tracer.template sample<recursive::Form::Iterative>(x, y, s, sum);
+            tracer.template sample<recursive::Form::Iterative>(x, y, s);
             line.path_segments.push_back(static_cast<std::uint32_t>(tracer.segments() - before));
         }
     }
@@ -57,21 +55,18 @@ LineLog record_line(const CompiledScene<float>& scene, const RenderSettings& set
     return line;
 }
 
-/// Processor time of every `step`th line.
+/// Processor time of every `step`th line, by plain rules, as the engine runs them.
 template <SceneNeeds needs>
 std::vector<double> time_lines(const CompiledScene<float>& scene, const RenderSettings& settings, std::int64_t step) {
     const FlushDenormals flush;
-    recursive::Tracer<needs, float, NoWorkCount, Splitting::Off> tracer(
-        scene, random_seed(settings.seed), settings.depth, 0,
-        FixedPoint::make(settings.end_sample, scene.max_radiance));
+    recursive::Tracer<needs, float, NoWorkCount, Splitting::Off, recursive::Rules::Plain> tracer(
+        scene, settings, FixedPoint::make(settings.end_sample, scene.max_radiance));
     std::vector<double> seconds;
     for (std::int64_t y = 0; y < scene.height; y += step) {
         const double start = processor_seconds();
-        for (std::int64_t x = 0; x < scene.width; ++x) {
-            FixedRgb sum{};
+        for (std::int64_t x = 0; x < scene.width; ++x)
             for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s)
-                tracer.template sample<recursive::Form::Recursive>(x, y, s, sum);
-        }
+                tracer.template sample<recursive::Form::Recursive>(x, y, s);
         seconds.push_back(processor_seconds() - start);
     }
     return seconds;

@@ -19,6 +19,8 @@ std::vector<std::unique_ptr<Study>> all_studies() {
     studies.push_back(ladder_study());
     studies.push_back(needs_study());
     studies.push_back(depth_study());
+    studies.push_back(speed_accuracy_study());
+    studies.push_back(adaptive_study());
     studies.push_back(stability_study());
     return studies;
 }

@@ -57,9 +57,10 @@ Measured measure(const Engine& engine, const StudyScene& scene, const RenderSett
 }
 
 std::string image_of(const StudyScene& scene, const RenderSettings& settings) {
-    return fmt::format("{} {} x {}, samples {} to {}, depth {}, split {}, seed {}", scene.name, scene.compiled.width,
-                       scene.compiled.height, settings.first_sample, settings.end_sample, settings.depth,
-                       settings.split_depth, settings.seed);
+    return fmt::format("{} {} x {}, samples {} to {}, depth {}, split {}, seed {}{}{}", scene.name,
+                       scene.compiled.width, scene.compiled.height, settings.first_sample, settings.end_sample,
+                       settings.depth, settings.split_depth, settings.seed,
+                       settings.sampler == Sampler::Sobol ? ", sobol" : "", settings.roulette ? ", roulette" : "");
 }
 
 std::vector<Column> render_columns() {

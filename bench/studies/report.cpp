@@ -78,7 +78,8 @@ std::string summary_page(const json& run) {
         fmt::format("raypool study {}{}", text_of(run, "study"), options.at("quick").get<bool>() ? " --quick" : "");
     for (const char* key : {"width", "spp", "depth", "threads", "repeats", "seed"})
         if (options.at(key) != 0) command += fmt::format(" --{} {}", key, options.at(key).dump());
-    if (text_of(options, "scene") != "paper") command += " --scene " + text_of(options, "scene");
+    if (options.contains("scene_given") || text_of(options, "scene") != "paper")
+        command += " --scene " + text_of(options, "scene");
     page += fmt::format("\n{}. Finished {}; the host took {:.1f} % of the processor time for others.\n",
                         machine_line(run.at("environment")), text_of(run, "finished"),
                         100 * run.at("stolen").get<double>());

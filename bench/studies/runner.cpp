@@ -56,22 +56,14 @@ json identity(const Study& study, const StudyOptions& options, const std::vector
               const std::vector<Column>& columns) {
     json plan = json::array();
     for (const Case& c : cases) plan.push_back({{"case", c.id}, {"image", c.image}, {"repeats", c.repeats}});
+    json asked{{"quick", options.is_quick},  {"scene", options.scene}, {"width", options.width},
+               {"spp", options.spp},         {"depth", options.depth}, {"threads", options.threads},
+               {"repeats", options.repeats}, {"seed", options.seed}};
+    if (options.is_scene_given) asked["scene_given"] = true;
     json described = json::array();
     for (const Column& column : columns) described.push_back({{"name", column.name}, {"what", column.what}});
-    return {{"study", study.name()},
-            {"question", study.question()},
-            {"options",
-             {{"quick", options.is_quick},
-              {"scene", options.scene},
-              {"width", options.width},
-              {"spp", options.spp},
-              {"depth", options.depth},
-              {"threads", options.threads},
-              {"repeats", options.repeats},
-              {"seed", options.seed}}},
-            {"plan", plan},
-            {"columns", described},
-            {"environment", environment_json()}};
+    return {{"study", study.name()}, {"question", study.question()}, {"options", asked},
+            {"plan", plan},          {"columns", described},         {"environment", environment_json()}};
 }
 
 /// Names the part in which two runs differ.
@@ -166,6 +158,14 @@ json read_run(const fs::path& folder) {
 
 }  // namespace
 
+std::vector<std::size_t> turn_order(std::size_t count, std::size_t turn) {
+    std::size_t stride = turn + 1;
+    while (std::gcd(stride, count) != 1) ++stride;
+    std::vector<std::size_t> order(count);
+    for (std::size_t i = 0; i < count; ++i) order[i] = (turn + i * stride) % count;
+    return order;
+}
+
 std::int64_t run_count(const Study& study, const StudyOptions& options) {
     std::int64_t count = 0;
     for (const Case& c : study.cases(options)) count += c.repeats;
@@ -201,16 +201,13 @@ bool run_study(const Study& study, const StudyOptions& options, const fs::path& 
     }
     if (control.progress != nullptr) control.progress->paths = data.run_count();
 
-    // Repeats outermost; each goes through the cases by another stride, so that no case always follows the same other.
+    // Repeats outermost.
     int repeats = 0;
     for (const Case& c : cases) repeats = std::max(repeats, c.repeats);
     const CpuTime before = cpu_time();
     for (int repeat = 0; repeat < repeats; ++repeat) {
-        const auto turn = static_cast<std::size_t>(repeat);
-        std::size_t stride = turn + 1;
-        while (std::gcd(stride, cases.size()) != 1) ++stride;
-        for (std::size_t i = 0; i < cases.size(); ++i) {
-            const Case& c = cases[(turn + i * stride) % cases.size()];
+        for (const std::size_t i : turn_order(cases.size(), static_cast<std::size_t>(repeat))) {
+            const Case& c = cases[i];
             if (repeat >= c.repeats || data.has(c.id, repeat)) continue;
             if (control.is_stopped != nullptr && *control.is_stopped) return false;
             data.add(c, repeat, c.run());

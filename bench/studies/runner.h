@@ -2,14 +2,15 @@
 ///
 /// A study's folder holds data.csv (a row or more for each repeat of each case, appended as soon as it is known),
 /// run.json (what was asked, of which build, on which machine, and what came out), summary.md and the pictures. A run
-/// that was interrupted goes on where it stopped, provided that study, options, build and machine are the same. One that
-/// is complete is summarised anew, also by another build, and keeps the build and machine that its figures are of.
+/// that was interrupted goes on where it stopped, provided that study, options, build and machine are the same. One
+/// that is complete is summarised anew, also by another build, and keeps the build and machine that its figures are of.
 #pragma once
 
 #include <atomic>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "bench/studies/study.h"
 #include "core/engine.h"
@@ -27,6 +28,10 @@ struct RunControl {
     const std::atomic<bool>* is_stopped = nullptr;  ///< when it turns true, the run ends after the case under way
     Progress* progress = nullptr;                   ///< counts finished repeats of cases, those found in the folder too
 };
+
+/// The order in which turn 0, 1, 2, ... goes through `count` things: each turn by another stride, so that none always
+/// follows the same other. Turn 0 goes through them as they stand.
+std::vector<std::size_t> turn_order(std::size_t count, std::size_t turn);
 
 /// How many repeats of cases the study takes in all.
 std::int64_t run_count(const Study& study, const StudyOptions& options);

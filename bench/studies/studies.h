@@ -7,6 +7,7 @@
 
 namespace raypool::studies {
 
+std::unique_ptr<Study> adaptive_study();
 std::unique_ptr<Study> depth_study();
 std::unique_ptr<Study> framebuffer_study();
 std::unique_ptr<Study> ladder_study();
@@ -16,6 +17,7 @@ std::unique_ptr<Study> schedules_study();
 std::unique_ptr<Study> load_study();
 std::unique_ptr<Study> replay_study();
 std::unique_ptr<Study> scaling_study();
+std::unique_ptr<Study> speed_accuracy_study();
 std::unique_ptr<Study> stability_study();
 
 }  // namespace raypool::studies

@@ -19,12 +19,14 @@ namespace raypool::studies {
 struct StudyOptions {
     bool is_quick = false;  ///< under a minute, with smaller images and fewer repeats
     std::string scene = "paper";
+    bool is_scene_given = false;  ///< studies that look at several scenes then keep to that one
     std::int64_t width = 0;
     std::int64_t spp = 0;
     std::int64_t depth = 0;
     int threads = 0;  ///< the most threads that are run, or whose load is counted
     int repeats = 0;
     std::uint64_t seed = 0;
+    std::filesystem::path folder;  ///< of the run, for what is dear to make; empty: nothing is to be kept
 };
 
 /// One thing that is run `repeats` times. The id is unique within the study, and stays the same from run to run, since

@@ -12,7 +12,7 @@ import common
 def main():
     folder = sys.argv[1]
     run, rows = common.read(folder)
-    module = importlib.import_module(run["study"])
+    module = importlib.import_module(run["study"].replace("-", "_"))
     for picture in run["pictures"]:
         common.save(module.PICTURES[picture["name"]](run, rows), folder, run, picture)
 

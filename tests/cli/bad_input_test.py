@@ -124,7 +124,9 @@ class BadOption(CommandTest):
                 "--schedule": ("fair", "static,0", "static,-1", "dynamic,", "dynamic,1.5", "guided,2147483648", ",3",
                                "static,1,2", "Static"),
                 "--grain": ("row", "tile", "tile:", "tile:0", "tile:-8", "tile:65537", "pixel:1", "tile:8x8"),
+                "--target-error": ("0", "-1", "nan", "small", ""),
                 "--precision": ("half", "long double"),
+                "--sampler": ("halton", "Sobol", ""),
                 "--engine": ("quick", ""),
                 "--output": ("out", "out.gif", "out.png.txt", ".png/", ""),
                 "--stats": ("",),
@@ -144,6 +146,13 @@ class BadOption(CommandTest):
         for accumulator in ("owned", "owned-planar"):
             self.assert_refused("render", "scene.json", "--engine", "wavefront", "--pool-scope", "shared",
                                 "--accumulator", accumulator, named=["--accumulator", "--pool-scope"])
+
+    def test_for_what_adaptive_sampling_cannot_know_is_refused(self):
+        adaptive = ("render", "scene.json", "--target-error", 0.1)
+        self.assert_refused(*adaptive, "--split-depth", 1, named=["--split-depth", "--target-error"])
+        self.assert_refused(*adaptive, "--samples", "0:5", named=["--samples", "--target-error"])
+        self.assert_refused(*adaptive, "--engine", "wavefront", "--pool-scope", "shared", "--accumulator", "atomic-float",
+                            named=["--accumulator", "--target-error"])
 
     def test_that_is_unknown_is_refused(self):
         self.assert_refused("render", "scene.json", "--antialias", named="--antialias")

@@ -50,6 +50,21 @@ class Small(CommandTest):
         colours = {tuple(pixels[i:i + 3]) for i in range(0, len(pixels), 3)}
         self.assertEqual(colours, {(0.0, 0.0, 0.0), (0.25, 0.5, 1.0)})
 
+    def test_target_error_stops_where_it_is_reached_or_at_the_most_samples(self):
+        self.run_well("render", "half_sky", "--width", 32, "--target-error", 0.008, "--spp", 5000, "--stats", "s.json",
+                      "-o", "out.pfm", "--quiet")
+        stats = json.loads((self.folder / "s.json").read_text())
+        adaptive = stats["adaptive"]
+        self.assertLessEqual(adaptive["rmse_estimate"], 0.008)
+        counts = adaptive["samples_per_pixel"]
+        self.assertLess(counts["least"], counts["most"])
+        self.assertEqual(stats["paths"], round(counts["mean"] * 32 * 18))
+        self.run_well("render", "half_sky", "--width", 32, "--spp", 4096, "--seed", 7, "-o", "truth.pfm", "--quiet")
+        error = float(self.run_command("diff", "out.pfm", "truth.pfm").stdout.split("RMSE")[1].split()[0])
+        self.assertLess(error, 0.012)
+        stats = self.stats("--target-error", 1e-6, "--spp", 20)
+        self.assertEqual(stats["adaptive"]["samples_per_pixel"]["most"], 20)
+
     def test_empty_scene_is_its_background(self):
         empty = changed(changed(changed(SCENE, "/shapes", []), "/materials"), "/textures")
         for precision in ("float", "double"):
@@ -72,6 +87,28 @@ class Render(CommandTest):
         self.assertTrue(result.stdout.endswith("\nout.png\n"))
         self.assertEqual((self.folder / "out.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(self.run_well("render", "scene.json", "--spp", 2, "--quiet").stdout, "")
+
+    def test_sampler_and_roulette_change_the_image_and_are_recorded(self):
+        hashes = set()
+        for sampler in ("independent", "sobol"):
+            for roulette in ((), ("--roulette",)):
+                images = set()
+                for engine in ("recursive", "iterative", "wavefront"):
+                    stats = self.stats("--spp", 32, "--sampler", sampler, *roulette, "--engine", engine)
+                    images.add(stats["hash"])
+                    self.assertEqual(stats["settings"]["sampler"], sampler)
+                    self.assertEqual(stats["settings"]["roulette"], bool(roulette))
+                self.assertEqual(len(images), 1)
+                hashes |= images
+        self.assertEqual(len(hashes), 4)
+        summary = self.run_well("render", "scene.json", "--spp", 1, "--sampler", "sobol", "--roulette").stdout
+        self.assertIn("depth 50 and roulette, sobol, seed 0", summary)
+
+    def test_says_what_the_depth_cuts_off_at_most(self):
+        stats = self.stats("--spp", 1, "--depth", 3)
+        summary = self.run_well("render", "scene.json", "--spp", 1, "--depth", 3).stdout
+        self.assertGreater(stats["truncation_bound"], 0)
+        self.assertIn(f"depth 3 cuts off a radiance of at most {stats['truncation_bound']:.3g} a pixel\n", summary)
 
     def test_needs_neither_a_scene_nor_an_output(self):
         result = self.run_well("render", "--width", 16, "--spp", 1)
@@ -317,10 +354,11 @@ class Diff(CommandTest):
             for name, seed in (("a", 0), ("again", 0), ("b", 1)):
                 self.run_well("render", "scene.json", "--spp", 1, "--seed", seed, "-o", f"{name}.{kind}")
             same = self.run_well("diff", f"a.{kind}", f"again.{kind}")
-            self.assertRegex(same.stdout, r"pixels that differ 0 of 48\nRMSE +0\n")
+            self.assertRegex(same.stdout, r"pixels that differ 0 of 48\nMSE +0\nRMSE +0\n")
             other = self.run_command("diff", f"a.{kind}", f"b.{kind}", "-o", "where.png")
             self.assertEqual((other.returncode, other.stderr), (1, ""))
             self.assertRegex(other.stdout, r"pixels that differ [1-9]\d* of 48\n")
+            self.assertRegex(other.stdout, r"\ntile bias +z = -?\d+\.\d\d in columns 0 to 7, lines 0 to 5, ")
             self.assertTrue(other.stdout.endswith("\nwhere.png\n"))
         self.run_well("diff", "a.exr", "a.pfm")
 

@@ -9,6 +9,7 @@
 
 #include "tests/errors.h"
 #include "tests/random_inputs.h"
+#include "tests/significance.h"
 
 namespace raypool::test {
 namespace {
@@ -110,6 +111,38 @@ TEST(Camera, SpreadsTimesOverTheOpenShutter) {
         sum += time;
     }
     EXPECT_NEAR(sum / kTimes, 0.5, 0.002);
+}
+
+/// Places in the pixel and on the lens and times, as a render draws them; with the samples of a pixel spread evenly the
+/// statistic can only be too small.
+TEST(Camera, SpreadsSamplesUniformlyOverPixelLensAndShutter) {
+    constexpr int kWidth = 40, kHeight = 20;
+    CameraDescription description = looking_down_the_z_axis();
+    description.defocus_angle_degrees = 2;
+    description.focus_distance = 10;
+    description.shutter_close = 1;
+    const Camera<double> camera = make_camera<double>(description, kWidth, kHeight);
+    for (const Sampler sampler : {Sampler::Independent, Sampler::Sobol}) {
+        Grid film, lens, time_of_place;
+        for (std::uint32_t i = 0; i < kInputs; ++i) {
+            const std::uint32_t pixel = i % (kWidth * kHeight), x = pixel % kWidth, y = pixel / kWidth;
+            const Ray<double> ray =
+                camera_ray<kEverything, double>(camera, x, y, pixel, i / (kWidth * kHeight), random_seed(0, sampler));
+            const Vec3<double> shift = ray.origin - camera.origin;
+            const double u = shift.dot(camera.lens_u) / camera.lens_u.squaredNorm();
+            const double v = shift.dot(camera.lens_v) / camera.lens_v.squaredNorm();
+            lens.add(u * u + v * v, std::atan2(v, u) / (2 * std::numbers::pi) + 0.5);
+
+            const double focus = description.focus_distance / -ray.direction[2];
+            const Vec3<double> at = shift + focus * ray.direction - camera.to_center;
+            const double column = at.dot(camera.pixel_u) / camera.pixel_u.squaredNorm() + kWidth / 2 - x;
+            const double row = at.dot(camera.pixel_v) / camera.pixel_v.squaredNorm() + kHeight / 2 - y;
+            film.add(column, row);
+            time_of_place.add(ray.time, column);
+        }
+        for (const Grid* grid : {&film, &lens, &time_of_place})
+            EXPECT_FALSE(is_significant(grid->p_value(), 6)) << grid->p_value();
+    }
 }
 
 /// The largest image there may be: a pixel is 1e-5 of the film, and float holds 24 bits.

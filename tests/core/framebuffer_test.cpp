@@ -33,6 +33,21 @@ TEST(FixedPoint, HoldsAllSamplesOfTheGreatestRadiance) {
     }
 }
 
+TEST(FixedPoint, HoldsTheSquaresOfAllSamplesOfTheGreatestRadiance) {
+    __extension__ using Int128 = __int128;
+    constexpr Int128 kMost = std::numeric_limits<std::int64_t>::max();
+    for (const std::int64_t spp : {1L, 2L, 3L, 100L, 128L, 129L, 1'000'000L, 1L << 31U}) {
+        for (const double radiance : {1e-6, 0.3, 1.0, 7.0, 1e6}) {
+            const FixedPoint fixed = FixedPoint::make(spp, radiance);
+            SampleConverter converter(fixed);
+            const double most = fixed.limit;
+            const std::int64_t square = converter.square(converter.convert<double>(vec3<double>(most, most, most)));
+            ASSERT_LE(Int128{square} * spp, kMost) << spp << ' ' << radiance;
+            ASSERT_NEAR(static_cast<double>(square) / fixed.square_scale(), 3 * most * most, 1e-6 * most * most);
+        }
+    }
+}
+
 TEST(FixedPoint, RoundsToTheNearestStep) {
     const FixedPoint fixed = FixedPoint::make(100, 1);
     SampleConverter converter(fixed);

@@ -36,6 +36,7 @@ TEST(ImageDiff, MatchesFiguresWorkedOutByHand) {
     const Image b = image_of(2, 1, {1, 0, 0, 1, 4, 0});
     const ImageDiff diff = compare_images(a, b);
     // Squared errors 0.25 and 4; the squares of b are 1, 1 and 16, their mean 3, a hundredth of it 0.03.
+    EXPECT_DOUBLE_EQ(diff.mse, 4.25 / 6);
     EXPECT_DOUBLE_EQ(diff.rmse, std::sqrt(4.25 / 6));
     EXPECT_DOUBLE_EQ(diff.rel_mse, (0.25 / 1.03 + 4 / 16.03) / 6);
     EXPECT_NEAR(diff.psnr, 10 * std::log10(6 / 4.25), 1e-12);

@@ -194,6 +194,8 @@ TEST(KernelAgreement, RandomBlocks) {
         const Uint32<Real> block = in.word();
         out(random_block<Real>(pixel, sample, block, random_seed(0)));
         out(random_block<Real>(pixel, sample, block, {0xffffffffU, 0x80000001U}));
+        out(random_block<Real>(pixel, sample, block, random_seed(0, Sampler::Sobol)));
+        out(random_block<Real>(pixel, sample, block, {0xffffffffU, 0x80000001U, Sampler::Sobol}));
     });
 }
 

@@ -27,6 +27,31 @@ TEST(WorkItems, HoldEveryPixelOnce) {
     }
 }
 
+TEST(ChosenPixels, AreKnownInEveryOrderOfItems) {
+    const std::vector<std::uint32_t> list{0, 3, 4, 5, 20, 21, 40, 90};
+    for (const std::int64_t stride : {1, 7, 13, 89}) {  // prime to 91
+        ChosenPixels chosen(&list);
+        for (std::int64_t i = 0; i < 91; ++i) {
+            const std::int64_t pixel = i * stride % 91;
+            ASSERT_EQ(chosen.contains(pixel), std::count(list.begin(), list.end(), pixel) == 1) << pixel;
+        }
+    }
+    EXPECT_TRUE(ChosenPixels(nullptr).contains(7));
+    const std::vector<std::uint32_t> none;
+    EXPECT_FALSE(ChosenPixels(&none).contains(0));
+}
+
+TEST(ChosenPixels, OfALineAreThoseBetweenItsEnds) {
+    const std::vector<std::uint32_t> list{0, 3, 4, 5, 20, 21};
+    const auto between = [&](std::int64_t begin, std::int64_t end) {
+        const auto some = chosen_between(list, begin, end);
+        return std::vector<std::uint32_t>(some.begin(), some.end());
+    };
+    EXPECT_EQ(between(3, 5), (std::vector<std::uint32_t>{3, 4}));
+    EXPECT_EQ(between(0, 100), list);
+    EXPECT_TRUE(between(6, 20).empty());
+}
+
 TEST(WorkItems, AreCountedIn64Bits) {
     constexpr std::int64_t kSize = 65536;
     const WorkItems pixels(kSize, kSize, {Grain::Kind::Pixel, 1});

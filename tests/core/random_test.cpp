@@ -85,18 +85,18 @@ struct Key {
 using Neighbour = void (*)(Key&);
 
 /// Each number of a block against each number of the neighbour's block.
-void expect_independent(Neighbour neighbour) {
+void expect_independent(Neighbour neighbour, Sampler sampler = Sampler::Independent) {
     std::array<std::array<Correlation, 4>, 4> correlation;
     for (std::uint32_t i = 0; i < kInputs; ++i) {
         const Key key{i / 10, i % 10, 2 + i % 3, i % 7};
         Key other = key;
         neighbour(other);
-        const auto a = random_block<float>(key.pixel, key.sample, key.block, random_seed(key.seed));
-        const auto b = random_block<float>(other.pixel, other.sample, other.block, random_seed(other.seed));
+        const auto a = random_block<float>(key.pixel, key.sample, key.block, random_seed(key.seed, sampler));
+        const auto b = random_block<float>(other.pixel, other.sample, other.block, random_seed(other.seed, sampler));
         for (int k = 0; k < 4; ++k)
             for (int l = 0; l < 4; ++l) correlation[k][l].add(a[k], b[l]);
     }
-    constexpr int kTests = 5 * 16;
+    constexpr int kTests = 9 * 16;
     for (int k = 0; k < 4; ++k) {
         for (int l = 0; l < 4; ++l) {
             EXPECT_FALSE(is_significant(correlation[k][l].p_value(), kTests)) << k << ' ' << l;
@@ -119,6 +119,20 @@ TEST(RandomBlock, TellsNothingOfTheNextBounce) {
 }
 TEST(RandomBlock, TellsNothingOfTheNextSeed) {
     expect_independent([](Key& key) { ++key.seed; });
+}
+
+// The samples of a pixel are meant to know of each other there; nothing else is.
+TEST(SobolSampler, TellsNothingOfTheNextPixel) {
+    expect_independent([](Key& key) { ++key.pixel; }, Sampler::Sobol);
+}
+TEST(SobolSampler, TellsNothingOfThePixelBelow) {
+    expect_independent([](Key& key) { key.pixel += 1000; }, Sampler::Sobol);
+}
+TEST(SobolSampler, TellsNothingOfTheNextBounce) {
+    expect_independent([](Key& key) { ++key.block; }, Sampler::Sobol);
+}
+TEST(SobolSampler, TellsNothingOfTheNextSeed) {
+    expect_independent([](Key& key) { ++key.seed; }, Sampler::Sobol);
 }
 
 TEST(RandomSeed, IsTheFirstNumberOfSplitmix64) {

@@ -68,19 +68,6 @@ TEST(TurnOfAngle, IsZeroForTheZeroVector) {
     EXPECT_EQ(turn_of_angle<float>(0.0F, 0.0F), 0);
 }
 
-/// Counts pairs of numbers in [0, 1] in a grid of equal cells.
-class Grid {
-  public:
-    void add(double u, double v) { ++counts_[cell(u) * kEdge + cell(v)]; }
-    [[nodiscard]] double p_value() const { return p_value_of_uniform_counts(counts_); }
-
-  private:
-    static constexpr std::size_t kEdge = 24;
-    static std::size_t cell(double u) {
-        return std::min(static_cast<std::size_t>(u * static_cast<double>(kEdge)), kEdge - 1);
-    }
-    std::vector<std::int64_t> counts_ = std::vector<std::int64_t>(kEdge * kEdge);
-};
 double turn(double y, double x) {
     return std::atan2(y, x) / (2 * std::numbers::pi) + 0.5;
 }

@@ -64,7 +64,8 @@ class PathHits {
 };
 
 template <SceneNeeds needs, Splitting splitting, class Scalar, class Real>
-void run_scatter(const CompiledScene<Scalar>& scene, Arguments<Real> in, Results<Real>& out) {
+void run_scatter(const CompiledScene<Scalar>& scene, const RandomSeed& seed, bool roulette, Arguments<Real> in,
+                 Results<Real>& out) {
     Ray<Real> ray;
     ray.origin = in.vec();
     ray.direction = in.vec();
@@ -77,7 +78,7 @@ void run_scatter(const CompiledScene<Scalar>& scene, Arguments<Real> in, Results
     const Uint32<Real> step = in.word();
     constexpr int kSplitDepth = splitting == Splitting::On ? 3 : 0;
     const Scattered<Real> after = scatter<needs, Real, splitting>(scene, ray, t, id, throughput, {pixel, sample}, step,
-                                                                  random_seed(0), kSplitDepth);
+                                                                  seed, kSplitDepth, roulette);
     out(after.origin), out(after.throughput);
     out(select<Real>(after.is_emitter, throughput, after.direction));  // of an ended path it means nothing
     out.mask(after.is_alive), out.mask(after.is_emitter);
@@ -99,8 +100,8 @@ void expect_scatter_agrees(const std::string& name) {
         expect_lanes_agree_for<Scalar, Reals...>(
             kInputs / kScenes, [&](RandomInputs& random, Row<Scalar>& row) { hits.fill(random, row); },
             [&]<class Real>(Arguments<Real>& in, Results<Real>& out) {
-                run_scatter<needs, Splitting::Off>(scene, in, out);
-                run_scatter<kEverything, Splitting::On>(scene, in, out);
+                run_scatter<needs, Splitting::Off>(scene, random_seed(0), false, in, out);
+                run_scatter<kEverything, Splitting::On>(scene, random_seed(1, Sampler::Sobol), true, in, out);
             });
     });
 }

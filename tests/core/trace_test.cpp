@@ -80,13 +80,15 @@ TEST_F(TraceFile, KeepsTheFirstEventsOfAThreadAndCountsTheOthers) {
     EXPECT_EQ(written(trace)["otherData"]["events_dropped"], 5);
 }
 
-TEST(Trace, ForgetsTheRenderBefore) {
+TEST(Trace, GoesOnInLaterPassesOfTheSameImage) {
     Trace trace;
-    trace.begin(0, 3);
-    trace.lane(2).span("line", 0, 1);
+    trace.begin(2, 3);
+    trace.lane(2).span("line", 2, 3);
     trace.begin(5, 1);
-    EXPECT_EQ(trace.lanes().size(), 1U);
-    EXPECT_EQ(trace.event_count(), 0);
+    trace.lane(0).span("line", 5, 6);
+    EXPECT_EQ(trace.lanes().size(), 3U);
+    EXPECT_EQ(trace.event_count(), 2);
+    EXPECT_EQ(trace.start_s(), 2);
 }
 
 TEST(Trace, ToAPlaceThatCannotBeWrittenIsRefused) {

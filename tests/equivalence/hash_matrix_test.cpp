@@ -22,6 +22,9 @@ struct MatrixCase {
     std::int64_t height;
     std::int64_t spp;
     std::int32_t depth;
+    Sampler sampler = Sampler::Independent;
+    bool roulette = false;
+    int split_depth = 0;
 };
 
 std::string describe(const Engine& engine, const RenderSettings& settings) {
@@ -55,6 +58,9 @@ RenderSettings settings_of(const MatrixCase& test) {
     RenderSettings settings;
     settings.end_sample = test.spp;
     settings.depth = test.depth;
+    settings.sampler = test.sampler;
+    settings.roulette = test.roulette;
+    settings.split_depth = test.split_depth;
     return settings;
 }
 
@@ -93,6 +99,9 @@ const std::vector<MatrixCase> kCases{
     {"a_column_of_textures", "textures", 1, 40, 1, 50},
     {"no_depth", "paper", 9, 5, 1, 0},
     {"only_camera_rays", "paper", 9, 5, 1, 1},
+    {"paper_by_sobol", "paper", 24, 14, 2, 50, Sampler::Sobol},
+    {"cornell_by_roulette", "cornell", 16, 16, 2, 50, Sampler::Independent, true},
+    {"split_glass_by_sobol_and_roulette", "glass_stack", 16, 12, 2, 50, Sampler::Sobol, true, 2},
 };
 INSTANTIATE_TEST_SUITE_P(Scenes, HashMatrix, testing::ValuesIn(kCases),
                          [](const auto& test) { return test.param.name; });
@@ -102,10 +111,11 @@ class HashMatrixInDouble : public testing::TestWithParam<MatrixCase> {};
 TEST_P(HashMatrixInDouble, EveryLoopAndBothFormsMakeOneImage) {
     check_matrix<double>(GetParam(), "matrix_double_" + GetParam().name);
 }
-INSTANTIATE_TEST_SUITE_P(Scenes, HashMatrixInDouble,
-                         testing::Values(MatrixCase{"paper", "paper", 17, 9, 1, 50},
-                                         MatrixCase{"textures", "textures", 17, 9, 1, 50}),
-                         [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, HashMatrixInDouble,
+    testing::Values(MatrixCase{"paper", "paper", 17, 9, 1, 50}, MatrixCase{"textures", "textures", 17, 9, 1, 50},
+                    MatrixCase{"cornell_by_sobol_and_roulette", "cornell", 12, 12, 2, 50, Sampler::Sobol, true}),
+    [](const auto& test) { return test.param.name; });
 
 class OneImage : public testing::TestWithParam<std::string> {};
 

@@ -110,6 +110,8 @@ TEST_P(PoolMatrix, EveryPoolMakesTheImageThatRecursionMakes) {
         settings.end_sample = test.spp;
         settings.depth = test.depth;
         settings.split_depth = split_depth;
+        settings.sampler = split_depth == 0 ? Sampler::Independent : Sampler::Sobol;
+        settings.roulette = split_depth != 0;
         const Rendered expected = render(recursive::RecursiveEngine(), scene, settings);
         const Rendered iterative = render(recursive::IterativeEngine(), scene, settings);
         ASSERT_TRUE(same_image(test.scene, expected, iterative, "iterative"));
@@ -127,32 +129,44 @@ TEST_P(PoolMatrix, EveryPoolMakesTheImageThatRecursionMakes) {
     }
 }
 
-TEST_P(PoolMatrix, EveryRungOfTheLadderMakesTheSameImage) {
-    const PoolCase& test = GetParam();
-    const CompiledScene<float> scene = compile<float>(small_scene(test.scene, test.width, test.height));
-    RenderSettings settings;
-    settings.end_sample = test.spp;
-    settings.depth = test.depth;
-    const Rendered expected = render(recursive::RecursiveEngine(), scene, settings);
-    settings.threads = 3;
-    for (const Rung& rung : ladder(settings.threads)) {
-        const Rendered got = render(WavefrontEngine(rung.pool), scene, settings);
-        EXPECT_TRUE(same_image(test.scene, expected, got, rung.name));
+/// With the sampler and roulette in every position, and with glass that splits paths.
+template <class Scalar>
+void expect_one_image_of_all_rungs(const PoolCase& test) {
+    const CompiledScene<Scalar> scene = compile<Scalar>(small_scene(test.scene, test.width, test.height));
+    for (const Sampler sampler : {Sampler::Independent, Sampler::Sobol}) {
+        for (const bool roulette : {false, true}) {
+            for (const int split_depth : {0, 2}) {
+                RenderSettings settings;
+                settings.end_sample = test.spp;
+                settings.depth = test.depth;
+                settings.sampler = sampler;
+                settings.roulette = roulette;
+                settings.split_depth = split_depth;
+                const Rendered expected = render(recursive::RecursiveEngine(), scene, settings);
+                EXPECT_EQ(expected.report.audit.clamped, 0);
+                settings.threads = 3;
+                for (const Rung& rung : ladder(settings.threads)) {
+                    const Rendered got = render(WavefrontEngine(rung.pool), scene, settings);
+                    const std::string how = fmt::format("{}, sampler {}, roulette {}, split depth {}", rung.name,
+                                                        static_cast<int>(sampler), roulette, split_depth);
+                    EXPECT_TRUE(same_image(test.scene, expected, got, how));
+                    EXPECT_EQ(expected.report.segments(), got.report.segments()) << how;
+                }
+            }
+        }
     }
+}
+
+TEST_P(PoolMatrix, EveryRungOfTheLadderMakesTheSameImage) {
+    expect_one_image_of_all_rungs<float>(GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PoolMatrix, testing::ValuesIn(kCases),
                          [](const auto& param) { return std::string(param.param.scene); });
 
 TEST(PoolEquivalence, DoublePrecisionAgreesToo) {
-    const CompiledScene<double> scene = compile<double>(small_scene("paper", 20));
-    RenderSettings settings;
-    settings.end_sample = 3;
-    const Rendered expected = render(recursive::RecursiveEngine(), scene, settings);
-    settings.threads = 2;
-    for (const Rung& rung : ladder(settings.threads))
-        EXPECT_TRUE(
-            same_image("paper_double", expected, render(WavefrontEngine(rung.pool), scene, settings), rung.name));
+    expect_one_image_of_all_rungs<double>({"paper", 20, 11, 3, 50});
+    expect_one_image_of_all_rungs<double>({"cornell", 12, 12, 2, 50});
 }
 
 TEST(PoolEquivalence, SharedPoolUnderContentionMakesOneImage) {

@@ -1,0 +1,91 @@
+/// Which configuration reaches a target on a scene in the least time: found by rendering the scene, not by rules.
+///
+/// Called by `raypool advise`. A pilot renders a small image of the scene in the trusted way (double, deep) and with
+/// one simplification at a time, and measures what each costs in bias, in noise and in time. From these the few most
+/// promising combinations are chosen, and each is rendered at the size that is asked for; what they then predict is the
+/// advice. An error is the root mean square over channels and pixels against the converged image.
+///
+/// Noise falls with the root of the samples; of Sobol points with the slope that was measured. Bias is taken from pairs
+/// of images that share random numbers. Only float and a limit of depth have any: Sobol points, roulette and split
+/// paths have the right expectation by construction (and by test), so theirs is measured but not charged.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/accuracy/configuration.h"
+#include "bench/accuracy/statistics.h"
+
+namespace raypool::accuracy {
+
+/// One of the two.
+struct Target {
+    std::optional<double> error;    ///< RMSE, > 0: no more than this, in the least time
+    std::optional<double> seconds;  ///< of the render, > 0: the least error in no more than this
+};
+
+struct AdviseOptions {
+    int threads = 1;
+    std::uint64_t seed = 0;  ///< of the pilots, which use none of the small numbers that users render with
+    /// What a render costs, in seconds. Tests put a count in its place.
+    std::function<double(const RenderReport&)> cost = [](const RenderReport& report) { return report.seconds; };
+    Progress* progress = nullptr;  ///< counts the pilots that are done
+};
+
+/// What renders of one configuration told.
+struct Pilot {
+    Configuration configuration;
+    std::int64_t spp = 0;
+    std::vector<double> mse;      ///< of an image of spp samples that is due to chance, seed by seed
+    std::vector<double> seconds;  ///< for such an image, seed by seed
+    double slope = -1;            ///< of the MSE by samples: -1 for independent points
+    Estimate bias;                ///< squared
+
+    [[nodiscard]] double noise(double samples) const;        ///< MSE due to chance
+    [[nodiscard]] double most_error(double samples) const;   ///< RMSE that 39 of 40 images stay below
+    [[nodiscard]] double least_error(double samples) const;  ///< and above
+    [[nodiscard]] double error(double samples) const;        ///< RMSE to be expected
+    [[nodiscard]] double seconds_of(double samples) const;   ///< median
+    [[nodiscard]] double bias_squared() const;               ///< what is charged
+};
+
+/// One change to the trusted configuration, or to the one named, and what it does.
+struct Simplification {
+    std::string text;  ///< "float instead of double"
+    Estimate bias;     ///< squared
+    double time = 1;   ///< of a sample, over that of the unchanged
+    double noise = 1;  ///< squared error of a sample, over that of the unchanged
+};
+
+/// A configuration with the samples that meet the target.
+struct Offer {
+    Pilot pilot;
+    std::int64_t spp = 0;
+    double seconds = 0;
+    double error = 0;
+    Interval error_interval;
+    Interval seconds_interval;
+};
+
+struct Advice {
+    std::vector<std::string> needs;  ///< what the scene needs
+    std::int64_t width = 0, height = 0;
+    std::int64_t pilot_width = 0, pilot_height = 0;
+    int pilot_seeds = 0;
+    std::vector<Simplification> simplifications;
+    std::vector<Offer> offers;  ///< the best first; at least one
+};
+
+/// The number of pilots, for a progress bar: no more than this.
+std::int64_t most_pilots();
+
+/// The samples with which a pilot's configuration meets the target, at least 1; nothing where it cannot.
+std::optional<std::int64_t> samples_for(const Pilot& pilot, const Target& target);
+
+/// The scene has the size that the image shall have. Throws InputError for a target that nothing meets.
+Advice advise(const Scene& scene, const Target& target, const AdviseOptions& options);
+
+}  // namespace raypool::accuracy

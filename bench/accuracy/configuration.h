@@ -1,0 +1,73 @@
+/// A configuration: everything but the samples per pixel that decides what an image costs and how wrong it is.
+///
+/// Called by the study of speed and accuracy and by `raypool advise`.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "bench/accuracy/statistics.h"
+#include "core/compiled_scene.h"
+#include "core/engine.h"
+#include "core/scene.h"
+
+namespace raypool::accuracy {
+
+enum class EngineKind : std::uint8_t { Recursive, Pool };
+enum class Precision : std::uint8_t { Float, Double };
+
+/// More segments than this nobody asks for: where it matters at all, recursion no longer fits into a stack.
+inline constexpr std::int32_t kDeep = 1000;
+
+struct Configuration {
+    EngineKind engine = EngineKind::Pool;
+    Precision precision = Precision::Float;
+    Sampler sampler = Sampler::Independent;
+    bool roulette = false;
+    std::int32_t depth = 50;
+    int split_depth = 0;
+
+    bool operator==(const Configuration&) const = default;
+};
+
+/// The one that references are made with: double, deep, nothing that saves time but the pool.
+inline constexpr Configuration kTrusted{.precision = Precision::Double, .depth = kDeep};
+
+/// What differs from the default: "float pool" or "double recursion, depth 5, split 1".
+std::string to_string(const Configuration& configuration);
+/// The flags of `raypool render` that say the same; those that say the command's default too.
+std::string render_flags(const Configuration& configuration);
+
+/// A scene in both precisions, which share nothing but the description.
+struct SceneInBoth {
+    explicit SceneInBoth(const Scene& scene)
+        : description(scene), in_float(compile<float>(scene)), in_double(compile<double>(scene)) {}
+    Scene description;
+    CompiledScene<float> in_float;
+    CompiledScene<double> in_double;
+    [[nodiscard]] std::int64_t pixel_count() const { return in_float.pixel_count(); }
+};
+
+struct Taken {
+    std::int64_t first_sample = 0;
+    std::int64_t end_sample = 1;
+    std::uint64_t seed = 0;
+    int threads = 1;
+};
+
+/// Adds samples to a framebuffer of the scene's size.
+RenderReport render_into(Framebuffer& framebuffer, const Configuration& configuration, const SceneInBoth& scene,
+                         const Taken& taken);
+
+/// An image by itself: samples 0 to end_sample.
+struct TimedImage {
+    Values values;  ///< channel means
+    RenderReport report;
+    std::string hash;
+};
+TimedImage render_image(const Configuration& configuration, const SceneInBoth& scene, const Taken& taken);
+
+/// Means of a framebuffer's sums, in double: an Image has floats, whose steps would show beside small errors.
+Values channel_means(const Framebuffer& framebuffer, std::int64_t sample_count);
+
+}  // namespace raypool::accuracy

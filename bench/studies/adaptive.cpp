@@ -1,0 +1,296 @@
+// Adaptive sampling against the same number of samples everywhere: error, time, bias, and who waits for whom.
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "bench/accuracy/reference.h"
+#include "bench/studies/adaptive_summary.h"
+#include "bench/studies/renders.h"
+#include "bench/studies/replay_ways.h"
+#include "bench/studies/runner.h"
+#include "bench/studies/studies.h"
+#include "core/adaptive.h"
+#include "core/error.h"
+#include "core/scene_reader.h"
+#include "recursive/engine.h"
+#include "wavefront/engine.h"
+
+namespace raypool::studies {
+
+namespace {
+
+using accuracy::mean;
+
+using SharedScene = std::shared_ptr<const accuracy::SceneInBoth>;
+using SharedReference = std::shared_ptr<accuracy::Reference>;
+
+/// No pixel gets more.
+constexpr std::int64_t kMostSamples = 1 << 16;
+
+/// A scene, and the errors that are asked for: those of about 32 and of about 128 samples a pixel.
+struct Target {
+    const char* scene;
+    std::vector<double> errors;
+};
+const std::vector<Target> kTargets{{"half_sky", {0.008, 0.004}},
+                                   {"paper", {0.03, 0.015}},
+                                   {"cornell", {0.15, 0.075}},
+                                   {"glass_stack", {0.025, 0.0125}}};
+
+struct Plan {
+    std::int64_t width;
+    std::int64_t half_spp;
+    int seeds;
+    std::uint64_t first_seed;
+    int threads;
+    int load_threads;
+};
+
+Plan plan_of(const StudyOptions& options) {
+    return {choose(options.width, options.is_quick, 96, 240),
+            32 * choose(options.spp, options.is_quick, 64, 256),
+            static_cast<int>(choose(options.repeats, options.is_quick, 5, 12)),
+            options.seed,
+            1,
+            static_cast<int>(choose(options.threads, false, 0, 8))};
+}
+
+/// What a render took and made.
+struct Made {
+    accuracy::Values values;
+    RenderReport report;
+    AdaptiveReport adaptive;
+    std::string hash;
+};
+
+RenderSettings settings_of(std::uint64_t seed, int threads) {
+    RenderSettings settings;
+    settings.seed = seed;
+    settings.threads = threads;
+    return settings;
+}
+
+Made make_adaptive(const Engine& engine, const CompiledScene<float>& scene, RenderSettings settings, double error) {
+    settings.end_sample = kMostSamples;
+    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(kMostSamples, scene.max_radiance),
+                            Moments::Second);
+    Made made;
+    made.report = render_adaptively(engine, scene, settings, error, framebuffer, made.adaptive);
+    made.hash = framebuffer.hash();
+    const double scale = 1 / framebuffer.fixed_point().scale();
+    for (std::size_t i = 0; i < framebuffer.sums().size(); ++i)
+        made.values.push_back(static_cast<double>(framebuffer.sums()[i]) * scale / made.adaptive.sample_counts[i / 3]);
+    return made;
+}
+
+/// An engine that keeps what threads did in each of its renders.
+class PassLog : public Engine {
+  public:
+    explicit PassLog(const Engine& engine) : engine_(engine) {}
+    [[nodiscard]] std::string name() const override { return engine_.name(); }
+    RenderReport render(const CompiledScene<float>& scene, const RenderSettings& settings,
+                        Framebuffer& framebuffer) const override {
+        return log(engine_.render(scene, settings, framebuffer));
+    }
+    RenderReport render(const CompiledScene<double>& scene, const RenderSettings& settings,
+                        Framebuffer& framebuffer) const override {
+        return log(engine_.render(scene, settings, framebuffer));
+    }
+
+    /// Segments that passes take when their slowest threads are waited for, over the segments that there are for a
+    /// thread: 1 is perfect balance.
+    [[nodiscard]] double load() const {
+        double longest = 0, fair = 0;
+        for (const RenderReport& pass : passes_) {
+            std::int64_t most = 0;
+            for (const ThreadWork& thread : pass.threads) most = std::max(most, thread.segments);
+            longest += static_cast<double>(most);
+            fair += static_cast<double>(pass.segments()) / static_cast<double>(pass.threads.size());
+        }
+        return longest / fair;
+    }
+
+  private:
+    const RenderReport& log(RenderReport report) const { return passes_.emplace_back(std::move(report)); }
+    const Engine& engine_;
+    mutable std::vector<RenderReport> passes_;
+};
+
+/// Ways to share out the pixels of a pass. Static ones fix beforehand who does what, so that they can be counted with
+/// any number of threads; pools whose threads take lines as they ask for them run on the cores that there are.
+struct Sharing {
+    const char* name;
+    LoopSchedule schedule;
+    Grain grain;
+    bool is_pool;
+};
+const std::vector<Sharing> kSharings{
+    {"lines, static", {LoopSchedule::Kind::Static, 0}, {Grain::Kind::Line}, false},
+    {"lines, static,1", {LoopSchedule::Kind::Static, 1}, {Grain::Kind::Line}, false},
+    {"pixels, static,1", {LoopSchedule::Kind::Static, 1}, {Grain::Kind::Pixel}, false},
+    {"pools, lines as asked for", {LoopSchedule::Kind::Dynamic, 1}, {Grain::Kind::Line}, true}};
+
+class Adaptive : public Study {
+  public:
+    [[nodiscard]] std::string name() const override { return "adaptive"; }
+    [[nodiscard]] std::string question() const override {
+        return "When does it pay to give noisy pixels more samples, what bias does it cost, and what does it do to "
+               "static schedules?";
+    }
+    [[nodiscard]] std::vector<Column> columns() const override {
+        return {{"kind", ColumnType::Text, "reference (being made), run, or load"},
+                {"scene", ColumnType::Text, "what was rendered"},
+                {"target", ColumnType::Real, "RMSE asked for, linear radiance"},
+                {"method", ColumnType::Text, "adaptive, or uniform with as many paths"},
+                {"sharing", ColumnType::Text, "of a load: how pixels were shared out"},
+                {"width", ColumnType::Count, "image width, pixels"},
+                {"threads", ColumnType::Count, "OpenMP threads"},
+                {"seed", ColumnType::Count, "of all random numbers"},
+                {"rounds", ColumnType::Count, "of estimating and rendering"},
+                {"samples", ColumnType::Real, "for each pixel, on average"},
+                {"seconds", ColumnType::Real, "wall clock of the parallel regions and of the estimates between them"},
+                {"segments", ColumnType::Count, "rays traced"},
+                {"rmse_estimate", ColumnType::Real, "what the render itself takes its error for"},
+                {"mse", ColumnType::Real, "squared error against the reference, less the reference's noise"},
+                {"shift", ColumnType::Real, "mean of the image over that of the reference, less 1"},
+                {"load", ColumnType::Real, "segments of the busiest threads of all passes over fair shares"},
+                {"hash", ColumnType::Text, "of the sums"}};
+    }
+
+    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
+        const Plan plan = plan_of(options);
+        const std::filesystem::path folder = options.folder.empty() ? "" : options.folder / "references";
+        std::vector<Case> cases;
+        std::vector<std::function<Case(std::uint64_t)>> by_seed;
+        for (const Target& target : kTargets) {
+            if (options.is_scene_given && options.scene != target.scene) continue;
+            Scene description = load_scene(target.scene);
+            set_width(description, plan.width);
+            const auto scene = std::make_shared<const accuracy::SceneInBoth>(description);
+            const auto reference = std::make_shared<accuracy::Reference>(scene, plan.half_spp, folder, core_count());
+            for (int part = 0; part < 2; ++part)
+                cases.push_back(
+                    {fmt::format("reference: {}, half {}", target.scene, part), "", 1, [=, this] {
+                         reference->extend(plan.half_spp);
+                         return std::vector<Row>{sparse_row(
+                             columns(), {{"kind", "reference"}, {"scene", target.scene}, {"width", plan.width}})};
+                     }});
+            for (const double error : target.errors)
+                by_seed.emplace_back(
+                    [=, this](std::uint64_t seed) { return pair(scene, reference, plan, error, seed); });
+            cases.push_back(loads(scene, plan, target.errors[0]));
+        }
+        if (cases.empty())
+            throw InputError("--scene: the study knows errors to ask for of half_sky, paper, cornell and glass_stack");
+        for (int turn = 0; turn < plan.seeds; ++turn)
+            for (const auto& make : by_seed) cases.push_back(make(plan.first_seed + static_cast<std::uint64_t>(turn)));
+        return cases;
+    }
+    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions&) const override {
+        return summarise_adaptive(data);
+    }
+
+  private:
+    /// Adaptive, and then uniform with as many paths, one after the other.
+    [[nodiscard]] Case pair(const SharedScene& scene, const SharedReference& reference, const Plan& plan, double error,
+                            std::uint64_t seed) const {
+        const auto run = [=, this]() -> std::vector<Row> {
+            const wavefront::WavefrontEngine pool({});
+            const RenderSettings settings = settings_of(seed, plan.threads);
+            const double begin = omp_get_wtime();
+            const Made adaptive = make_adaptive(pool, scene->in_float, settings, error);
+            const double adaptive_s = omp_get_wtime() - begin;
+
+            accuracy::Configuration uniform;
+            const auto spp = std::max<std::int64_t>(1, std::llround(adaptive.adaptive.mean_samples()));
+            const accuracy::TimedImage same = render_image(uniform, *scene, {0, spp, seed, plan.threads});
+            const accuracy::Halves& halves = reference->halves();
+            const double truth = mean(mean_of(halves));
+            const auto row = [&](const char* method, double samples, double seconds, const accuracy::Values& values,
+                                 const RenderReport& report, const std::string& hash) {
+                return sparse_row(columns(), {{"kind", "run"},
+                                              {"scene", scene->description.name},
+                                              {"target", error},
+                                              {"method", method},
+                                              {"width", plan.width},
+                                              {"threads", plan.threads},
+                                              {"seed", seed},
+                                              {"samples", samples},
+                                              {"seconds", seconds},
+                                              {"segments", report.segments()},
+                                              {"mse", corrected_mse(values, halves)},
+                                              {"shift", mean(values) / truth - 1},
+                                              {"hash", hash}});
+            };
+            std::vector<Row> rows{
+                row("adaptive", adaptive.adaptive.mean_samples(), adaptive_s, adaptive.values, adaptive.report,
+                    adaptive.hash),
+                row("uniform", static_cast<double>(spp), same.report.seconds, same.values, same.report, same.hash)};
+            set(rows[0], "rounds", adaptive.adaptive.rounds);
+            set(rows[0], "rmse_estimate", adaptive.adaptive.rmse);
+            return rows;
+        };
+        return {fmt::format("{} to {:g}, seed {}", scene->description.name, error, seed), "", 1, run};
+    }
+
+    /// Who does how much in the passes of an adaptive render and in a uniform one.
+    [[nodiscard]] Case loads(const SharedScene& scene, const Plan& plan, double error) const {
+        const auto run = [=, this]() -> std::vector<Row> {
+            std::vector<Row> rows;
+            std::string expected;
+            for (const Sharing& sharing : kSharings) {
+                const recursive::IterativeEngine loop;
+                const wavefront::WavefrontEngine pool({});
+                const int threads = sharing.is_pool ? std::min(plan.load_threads, core_count()) : plan.load_threads;
+                const Engine& engine = sharing.is_pool ? static_cast<const Engine&>(pool) : loop;
+                RenderSettings settings = settings_of(plan.first_seed, threads);
+                settings.schedule = sharing.schedule;
+                settings.grain = sharing.grain;
+
+                const PassLog adaptive(engine);
+                const Made made = make_adaptive(adaptive, scene->in_float, settings, error);
+                if (!expected.empty() && made.hash != expected)
+                    throw WrongImage(std::string(sharing.name) + ": another image than the first sharing made");
+                expected = made.hash;
+
+                const PassLog uniform(engine);
+                settings.end_sample = std::max<std::int64_t>(1, std::llround(made.adaptive.mean_samples()));
+                Framebuffer framebuffer(scene->in_float.width, scene->in_float.height,
+                                        FixedPoint::make(settings.end_sample, scene->in_float.max_radiance));
+                static_cast<void>(uniform.render(scene->in_float, settings, framebuffer));
+                for (const auto& [method, log] : {std::pair{"adaptive", &adaptive}, {"uniform", &uniform}})
+                    rows.push_back(sparse_row(columns(), {{"kind", "load"},
+                                                          {"scene", scene->description.name},
+                                                          {"target", error},
+                                                          {"method", method},
+                                                          {"sharing", sharing.name},
+                                                          {"width", plan.width},
+                                                          {"threads", threads},
+                                                          {"seed", plan.first_seed},
+                                                          {"load", log->load()}}));
+            }
+            return rows;
+        };
+        return {"load: " + scene->description.name, "", 1, run};
+    }
+
+    void set(Row& row, const char* column, const Value& value) const {
+        const std::vector<Column> all = columns();
+        const auto at = std::find_if(all.begin(), all.end(), [&](const Column& c) { return c.name == column; });
+        row[static_cast<std::size_t>(at - all.begin())] = value;
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<Study> adaptive_study() {
+    return std::make_unique<Adaptive>();
+}
+
+}  // namespace raypool::studies

@@ -1,0 +1,251 @@
+// Error against time: every configuration on the same scenes with the same seeds, held against a trusted reference.
+
+#include "bench/studies/speed_accuracy.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bench/accuracy/reference.h"
+#include "bench/studies/renders.h"
+#include "bench/studies/runner.h"
+#include "bench/studies/studies.h"
+#include "core/scene_reader.h"
+#include "core/settings_text.h"
+
+namespace raypool::studies {
+
+namespace speed_accuracy {
+
+using accuracy::Configuration;
+using accuracy::EngineKind;
+using accuracy::Precision;
+
+Configuration base_configuration(std::int64_t depth) {
+    Configuration base;
+    if (depth != 0) base.depth = static_cast<std::int32_t>(depth);
+    return base;
+}
+
+std::vector<Configuration> configurations(std::int64_t depth, bool has_glass) {
+    const Configuration base = base_configuration(depth);
+    std::vector<Configuration> all{base};
+    const auto add = [&](auto... changes) {
+        Configuration changed = base;
+        (changes(changed), ...);
+        all.push_back(changed);
+    };
+    const auto recursion = [](Configuration& c) { c.engine = EngineKind::Recursive; };
+    const auto in_double = [](Configuration& c) { c.precision = Precision::Double; };
+    const auto shallow = [](Configuration& c) { c.depth = 5; };
+    const auto sobol = [](Configuration& c) { c.sampler = Sampler::Sobol; };
+    const auto roulette = [](Configuration& c) { c.roulette = true; };
+    const auto deep = [](Configuration& c) { c.depth = accuracy::kDeep; };
+    const auto split = [](Configuration& c) { c.split_depth = 1; };
+    add(recursion);
+    add(in_double);
+    add(recursion, in_double);
+    add(sobol);
+    add(roulette);
+    add(shallow);
+    add(sobol, roulette);
+    add(sobol, roulette, deep);
+    add(sobol, roulette, recursion);
+    if (!has_glass) return all;
+    add(split);
+    add(sobol, roulette, split);
+    return all;
+}
+
+namespace {
+
+using SharedScene = std::shared_ptr<const accuracy::SceneInBoth>;
+
+/// Samples for each pixel in a pair of images of which the bias is taken, and the number of pairs.
+constexpr int kBiasPairs = 8;
+
+/// What every row begins with, behind "case" and "repeat".
+Row start_of_row(const char* kind, const accuracy::SceneInBoth& scene, const Configuration& c, int threads,
+                 std::int64_t spp) {
+    return {kind,
+            scene.description.name,
+            to_string(c),
+            c.engine == EngineKind::Pool ? "pool" : "recursion",
+            c.precision == Precision::Float ? "float" : "double",
+            c.sampler == Sampler::Sobol ? "Sobol" : "independent",
+            c.roulette ? "on" : "off",
+            c.depth,
+            c.split_depth,
+            threads,
+            scene.in_float.width,
+            spp};
+}
+Row extended(Row row, const Row& more) {
+    row.insert(row.end(), more.begin(), more.end());
+    return row;
+}
+
+struct Plan {
+    std::vector<std::int64_t> spps;
+    int seeds = 0;
+    std::uint64_t first_seed = 0;
+    int threads = 1;      ///< of what is timed
+    int all_threads = 1;  ///< of what is not
+
+    [[nodiscard]] std::int64_t half_spp() const { return 32 * spps.back(); }
+};
+
+Plan plan_of(const StudyOptions& options) {
+    Plan plan;
+    const std::int64_t most = choose(options.spp, options.is_quick, 64, 256);
+    for (std::int64_t spp = 1; spp < most; spp *= 4) plan.spps.push_back(spp);
+    plan.spps.push_back(most);
+    plan.seeds = static_cast<int>(choose(options.repeats, options.is_quick, 5, 10));
+    plan.first_seed = options.seed;
+    plan.threads = static_cast<int>(choose(options.threads, false, 0, 1));
+    plan.all_threads = static_cast<int>(choose(options.threads, false, 0, core_count()));
+    return plan;
+}
+
+std::vector<SharedScene> scenes_of(const StudyOptions& options) {
+    std::vector<std::string> names{"paper", "cornell", "glass_stack", "half_sky"};
+    if (options.is_scene_given) names = {options.scene};
+    std::vector<SharedScene> scenes;
+    for (const std::string& name : names) {
+        Scene scene = load_scene(name);
+        set_width(scene, choose(options.width, options.is_quick, 64, 112));
+        scenes.push_back(std::make_shared<const accuracy::SceneInBoth>(scene));
+    }
+    return scenes;
+}
+
+/// A part of the reference, so that an interruption loses little.
+Case reference_case(const SharedScene& scene, const std::shared_ptr<accuracy::Reference>& reference, const Plan& plan,
+                    std::int64_t range, std::int64_t number) {
+    const auto run = [=]() -> std::vector<Row> {
+        reference->extend(range);
+        return {
+            extended(start_of_row(kReference, *scene, accuracy::kTrusted, plan.all_threads, range), Row(8, nullptr))};
+    };
+    return {fmt::format("reference: {}, part {}", scene->description.name, number), "", 1, run};
+}
+
+/// One row for each configuration that makes another image: its expectation against the trusted one, by pairs of images
+/// made from the same random numbers, whose common noise goes away in their difference.
+Case bias_case(const SharedScene& scene, const std::vector<Configuration>& all, const Plan& plan) {
+    const auto run = [=]() -> std::vector<Row> {
+        const std::int64_t spp = plan.spps.back();
+        const auto image = [&](const Configuration& c, int pair) {
+            const std::uint64_t seed = plan.first_seed + static_cast<std::uint64_t>(pair);
+            return render_image(c, *scene, {0, spp, seed, plan.all_threads}).values;
+        };
+        std::vector<accuracy::Values> trusted;
+        for (int pair = 0; pair < kBiasPairs; ++pair) trusted.push_back(image(accuracy::kTrusted, pair));
+        std::vector<Row> rows;
+        for (const Configuration& c : all) {
+            if (c.engine != EngineKind::Pool) continue;  // the engine does not show in the image
+            std::vector<accuracy::Values> differences;
+            for (int pair = 0; pair < kBiasPairs; ++pair) {
+                differences.push_back(image(c, pair));
+                for (std::size_t i = 0; i < trusted[0].size(); ++i)
+                    differences.back()[i] -= trusted[static_cast<std::size_t>(pair)][i];
+            }
+            const accuracy::Estimate bias = accuracy::mean_squared_expectation(differences);
+            rows.push_back(extended(start_of_row(kBias, *scene, c, plan.all_threads, spp),
+                                    {nullptr, nullptr, nullptr, nullptr, nullptr, bias.value, bias.error, nullptr}));
+        }
+        return rows;
+    };
+    return {"bias: " + scene->description.name, "", 1, run};
+}
+
+Case timed_case(const SharedScene& scene, const std::shared_ptr<accuracy::Reference>& reference, const Configuration& c,
+                const Plan& plan, std::int64_t spp, std::uint64_t seed) {
+    const auto run = [=]() -> std::vector<Row> {
+        const accuracy::TimedImage made = render_image(c, *scene, {0, spp, seed, plan.threads});
+        const accuracy::Halves& halves = reference->halves();
+        return {extended(start_of_row(kRun, *scene, c, plan.threads, spp),
+                         {seed, made.report.seconds, made.report.segments(), corrected_mse(made.values, halves),
+                          noise_of(halves), nullptr, nullptr, made.hash})};
+    };
+    Configuration any_engine = c;
+    any_engine.engine = EngineKind::Pool;
+    return {fmt::format("{}: {}, {} spp, seed {}", scene->description.name, to_string(c), spp, seed),
+            fmt::format("{} {} x {}, {} with {} spp, seed {}", scene->description.name, scene->in_float.width,
+                        scene->in_float.height, to_string(any_engine), spp, seed),
+            1, run};
+}
+
+}  // namespace
+
+class SpeedAccuracy : public Study {
+  public:
+    [[nodiscard]] std::string name() const override { return "speed-accuracy"; }
+    [[nodiscard]] std::string question() const override {
+        return "Which configuration reaches which error in the least time, and where does each stop getting better?";
+    }
+    [[nodiscard]] std::vector<Column> columns() const override {
+        return {{"kind", ColumnType::Text, "reference (being made), bias (no times), or run"},
+                {"scene", ColumnType::Text, "what was rendered"},
+                {"configuration", ColumnType::Text, "the next columns in words"},
+                {"engine", ColumnType::Text, "who rendered"},
+                {"precision", ColumnType::Text, "numbers of the kernels"},
+                {"sampler", ColumnType::Text, "how random numbers are made"},
+                {"roulette", ColumnType::Text, "on: paths that carry little end by chance"},
+                {"depth", ColumnType::Count, "most segments of a path"},
+                {"split", ColumnType::Count, "hits on glass that follow both branches"},
+                {"threads", ColumnType::Count, "OpenMP threads"},
+                {"width", ColumnType::Count, "image width, pixels"},
+                {"spp", ColumnType::Count, "samples for each pixel"},
+                {"seed", ColumnType::Count, "of all random numbers of the image"},
+                {"seconds", ColumnType::Real, "wall clock of the parallel region"},
+                {"segments", ColumnType::Count, "rays traced"},
+                {"mse", ColumnType::Real, "squared error of linear radiance, less the noise of the reference"},
+                {"reference_noise", ColumnType::Real, "what was taken off"},
+                {"bias_squared", ColumnType::Real,
+                 "squared error that more samples do not mend, from pairs of images that share random numbers"},
+                {"bias_error", ColumnType::Real, "standard error of that"},
+                {"hash", ColumnType::Text, "of the sums of the image"}};
+    }
+
+    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
+        const Plan plan = plan_of(options);
+        const std::filesystem::path folder = options.folder.empty() ? "" : options.folder / "references";
+        std::vector<Case> cases;
+        std::vector<Case> timed;
+        std::vector<std::function<Case(std::uint64_t)>> by_seed;
+        for (const SharedScene& scene : scenes_of(options)) {
+            const auto reference =
+                std::make_shared<accuracy::Reference>(scene, plan.half_spp(), folder, plan.all_threads);
+            const std::int64_t range = std::max<std::int64_t>(1, plan.half_spp() / 16);
+            for (std::int64_t part = 0; part < 2 * ((plan.half_spp() + range - 1) / range); ++part)
+                cases.push_back(reference_case(scene, reference, plan, range, part));
+
+            const std::vector<Configuration> all = configurations(options.depth, scene->in_float.needs.dielectric);
+            cases.push_back(bias_case(scene, all, plan));
+            for (const Configuration& c : all)
+                for (const std::int64_t spp : plan.spps)
+                    by_seed.emplace_back(
+                        [=](std::uint64_t seed) { return timed_case(scene, reference, c, plan, spp, seed); });
+        }
+        // A seed after the other; what has the same seed stands side by side.
+        for (int turn = 0; turn < plan.seeds; ++turn)
+            for (const std::size_t i : turn_order(by_seed.size(), static_cast<std::size_t>(turn)))
+                cases.push_back(by_seed[i](plan.first_seed + static_cast<std::uint64_t>(turn)));
+        return cases;
+    }
+
+    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions& options) const override {
+        return speed_accuracy::summarise(data, options);
+    }
+};
+
+}  // namespace speed_accuracy
+
+std::unique_ptr<Study> speed_accuracy_study() {
+    return std::make_unique<speed_accuracy::SpeedAccuracy>();
+}
+
+}  // namespace raypool::studies

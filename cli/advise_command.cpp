@@ -1,0 +1,170 @@
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/accuracy/advise.h"
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "cli/progress_bar.h"
+#include "cli/stats_json.h"
+#include "core/environment.h"
+#include "core/error.h"
+#include "core/output_file.h"
+#include "core/scene_reader.h"
+
+namespace raypool::cli {
+
+namespace {
+
+using accuracy::Advice;
+using accuracy::Estimate;
+using accuracy::Offer;
+using accuracy::Simplification;
+
+struct AdviseCommand {
+    std::string scene = "paper";
+    std::optional<double> target_error;
+    std::optional<double> target_time;
+    std::int64_t width = 0;
+    int threads = 0;
+    std::string seed = "0";
+    std::string json;
+    bool is_quiet = false;
+};
+
+/// As a shell reads it.
+std::string quoted(const std::string& text) {
+    if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-") ==
+        std::string::npos)
+        return text;
+    std::string result = "'";
+    for (const char c : text) result += c == '\'' ? "'\\''" : std::string(1, c);
+    return result + "'";
+}
+
+std::string render_line(const AdviseCommand& command, const Offer& offer, int threads) {
+    return fmt::format("raypool render {}{} --spp {} {} --threads {}", quoted(command.scene),
+                       command.width == 0 ? "" : fmt::format(" --width {}", command.width), offer.spp,
+                       render_flags(offer.pilot.configuration), threads);
+}
+
+std::string bias_text(const Estimate& bias) {
+    if (bias.value == 0 && bias.error == 0) return "0";
+    return bias.value > 2 * bias.error ? fmt::format("{:.1e}", std::sqrt(bias.value))
+                                       : fmt::format("< {:.1e}", std::sqrt(std::max(bias.value, 0.0) + 2 * bias.error));
+}
+
+void print_offer(const Offer& offer) {
+    fmt::print("RMSE {:.3g} ({:.3g} to {:.3g}), of which bias {}; {:.3g} s ({:.3g} to {:.3g})\n", offer.error,
+               offer.error_interval.low, offer.error_interval.high, bias_text(offer.pilot.bias), offer.seconds,
+               offer.seconds_interval.low, offer.seconds_interval.high);
+}
+
+void print(const Advice& advice, const AdviseCommand& command, int threads) {
+    fmt::print("{}: needs {}\n", command.scene,
+               advice.needs.empty() ? "nothing" : fmt::format("{}", fmt::join(advice.needs, ", ")));
+    fmt::print("tried at {} x {} with {} seeds, {} thread{}, and the best {} at {} x {}\n\n", advice.pilot_width,
+               advice.pilot_height, advice.pilot_seeds, threads, threads == 1 ? "" : "s", advice.offers.size(),
+               advice.width, advice.height);
+    fmt::print("{:<44} {:>12} {:>11} {:>11} {:>13}\n", "what one change does", "bias (RMSE)", "time of", "MSE of",
+               "time to");
+    fmt::print("{:<44} {:>12} {:>11} {:>11} {:>13}\n", "", "", "a sample", "a sample", "equal noise");
+    for (const Simplification& s : advice.simplifications)
+        fmt::print("{:<44} {:>12} {:>11.2f} {:>11.2f} {:>13.2f}\n", s.text, bias_text(s.bias), s.time, s.noise,
+                   s.time * s.noise);
+    fmt::print("\n");
+    for (std::size_t i = 1; i < advice.offers.size(); ++i) {
+        fmt::print("next best: {}, {} spp: ", to_string(advice.offers[i].pilot.configuration), advice.offers[i].spp);
+        print_offer(advice.offers[i]);
+    }
+    fmt::print("predicted: ");
+    print_offer(advice.offers.front());
+    fmt::print("{}\n", render_line(command, advice.offers.front(), threads));
+}
+
+nlohmann::json bias_json(const Estimate& bias) {
+    return {{"squared", bias.value}, {"standard_error", bias.error}};
+}
+
+nlohmann::json advice_json(const Advice& advice, const AdviseCommand& command, int threads) {
+    nlohmann::json offers = nlohmann::json::array();
+    for (const Offer& o : advice.offers)
+        offers.push_back({{"configuration", to_string(o.pilot.configuration)},
+                          {"command", render_line(command, o, threads)},
+                          {"spp", o.spp},
+                          {"seconds", o.seconds},
+                          {"seconds_interval", {o.seconds_interval.low, o.seconds_interval.high}},
+                          {"rmse", o.error},
+                          {"rmse_interval", {o.error_interval.low, o.error_interval.high}},
+                          {"bias", bias_json(o.pilot.bias)},
+                          {"slope_of_mse", o.pilot.slope},
+                          {"pilot_spp", o.pilot.spp}});
+    nlohmann::json changes = nlohmann::json::array();
+    for (const Simplification& s : advice.simplifications)
+        changes.push_back({{"what", s.text}, {"bias", bias_json(s.bias)}, {"time", s.time}, {"mse", s.noise}});
+    nlohmann::json target = nlohmann::json::object();
+    if (command.target_error) target["error"] = *command.target_error;
+    if (command.target_time) target["seconds"] = *command.target_time;
+    return {{"scene", command.scene},
+            {"target", target},
+            {"needs", advice.needs},
+            {"size", {advice.width, advice.height}},
+            {"pilot_size", {advice.pilot_width, advice.pilot_height}},
+            {"pilot_seeds", advice.pilot_seeds},
+            {"threads", threads},
+            {"changes", changes},
+            {"offers", offers},
+            {"environment", environment_json()}};
+}
+
+void advise(const AdviseCommand& command) {
+    if (command.target_error.has_value() == command.target_time.has_value())
+        throw InputError("advise: needs one of --target-error and --target-time");
+    if (!command.json.empty()) check_writable(command.json);
+    Scene scene = load_scene(command.scene);
+    if (command.width != 0) set_width(scene, command.width);
+    Progress progress;
+    accuracy::AdviseOptions options;
+    options.threads = thread_count(command.threads);
+    options.seed = parse_seed(command.seed);
+    options.progress = &progress;
+    Advice advice;
+    {
+        const ProgressBar bar(progress, accuracy::most_pilots(), {"pilots/s", 1}, command.is_quiet);
+        advice = accuracy::advise(scene, {command.target_error, command.target_time}, options);
+    }
+    if (!command.json.empty()) write_json(command.json, advice_json(advice, command, options.threads));
+    if (command.is_quiet) return;
+    print(advice, command, options.threads);
+    if (!command.json.empty()) fmt::print("{}\n", command.json);
+}
+
+}  // namespace
+
+void add_advise_command(CLI::App& app, int&) {
+    auto command = std::make_shared<AdviseCommand>();
+    CLI::App* sub =
+        app.add_subcommand("advise", "Find the cheapest settings for an error, by trying them on the scene");
+    sub->add_option("scene", command->scene, "Scene file, or the name of a built-in scene (default: paper)");
+    const auto in_range = [](double least, double most) { return CLI::Range(least, most); };
+    sub->add_option("--target-error", command->target_error,
+                    "Root mean square error, in linear radiance, that the image may have")
+        ->check(in_range(1e-9, 1e6));
+    sub->add_option("--target-time", command->target_time, "Seconds that the render may take")
+        ->check(in_range(1e-6, 1e9));
+    sub->add_option("--width", command->width, "Image width; the height follows (default: the scene's)")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
+    sub->add_option("--threads", command->threads, "OpenMP threads (default: OMP_NUM_THREADS)")
+        ->check(CLI::Range(1, 4096));
+    sub->add_option("--seed", command->seed, "Seed of the trials (default: 0)");
+    sub->add_option("--json", command->json, "Write all that was found to this file")->check(check_file_name);
+    sub->add_flag("--quiet", command->is_quiet, "Print nothing");
+    sub->callback([command] { advise(*command); });
+}
+
+}  // namespace raypool::cli

@@ -1,0 +1,94 @@
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "core/error.h"
+#include "core/image_file.h"
+#include "core/output_file.h"
+#include "core/sums_file.h"
+
+namespace raypool::cli {
+
+namespace {
+
+struct MergeOptions {
+    std::vector<std::string> parts;
+    std::string output;
+    std::string checkpoint;
+    bool is_quiet = false;
+};
+
+/// Calls work, and names the file in what it throws.
+template <class Work>
+void with_name(const std::string& file, Work work) {
+    try {
+        work();
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", file, error.what()));
+    }
+}
+
+RenderSums read_part(const std::string& file) {
+    RenderSums part = read_sums(file);
+    if (part.framebuffer.has_squares())
+        throw InputError(fmt::format("{}: of an adaptive render, which has no parts", file));
+    return part;
+}
+
+/// Adds a part to the sum of those before it.
+void add(RenderSums& sum, const RenderSums& part) {
+    check_same_render(part, sum);
+    for (const SampleRange& range : part.ranges) sum.ranges = with_range(std::move(sum.ranges), range);
+    const std::span<std::int64_t> sums = sum.framebuffer.sums();
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        if (__builtin_add_overflow(sums[i], part.framebuffer.sums()[i], &sums[i]))
+            throw InputError("its sums are too large to be a part");
+}
+
+int merge(const MergeOptions& options) {
+    if (!options.output.empty()) image_format(options.output);
+    for (const std::string& file : {options.output, options.checkpoint})
+        if (!file.empty()) check_writable(file);
+    RenderSums sum = read_part(options.parts.front());
+    std::int64_t spp = 0;
+    with_name(options.parts.front(), [&] { spp = whole_number(sum.key, "spp", 1, kMostSpp); });
+    for (std::size_t i = 1; i < options.parts.size(); ++i) {
+        const RenderSums part = read_part(options.parts[i]);
+        with_name(options.parts[i], [&] { add(sum, part); });
+    }
+
+    if (!options.output.empty()) {
+        ImageAttributes attributes{{"raypool.hash", sum.framebuffer.hash()}};
+        for (const auto& [name, value] : sum.key) attributes["raypool." + name] = value;
+        write_image(options.output, sum.framebuffer.image(sum.sample_count()), attributes);
+    }
+    if (!options.checkpoint.empty()) write_sums(options.checkpoint, sum);
+    const std::vector<SampleRange> missing = gaps(sum.ranges, spp);
+    for (const SampleRange& gap : missing)
+        fmt::print(stderr, "raypool: samples {} to {} are missing (--samples {}:{})\n", gap.first, gap.end, gap.first,
+                   gap.end);
+    if (!options.is_quiet)
+        fmt::print("{} of {} samples a pixel\nhash {}\n", sum.sample_count(), spp, sum.framebuffer.hash());
+    return missing.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_merge_command(CLI::App& app, int& status) {
+    auto options = std::make_shared<MergeOptions>();
+    CLI::App* command = app.add_subcommand("merge", "Add up parts of a render, exactly; exit 1 if samples are missing");
+    command->add_option("parts", options->parts, "Files that `render --samples A:B --checkpoint FILE` wrote")
+        ->required();
+    command->add_option("-o,--output", options->output, "Image file: .png (sRGB), .exr or .pfm (linear)")
+        ->check(check_file_name);
+    command->add_option("--checkpoint", options->checkpoint, "Write the sum as a part, too")->check(check_file_name);
+    command->add_flag("--quiet", options->is_quiet, "Print nothing");
+    command->callback([options, &status] { status = merge(*options); });
+}
+
+}  // namespace raypool::cli

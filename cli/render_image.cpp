@@ -1,0 +1,122 @@
+#include "cli/render_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/progress_bar.h"
+#include "cli/stopwatch.h"
+#include "core/progressive.h"
+#include "core/scene_hash.h"
+#include "recursive/engine.h"
+#include "wavefront/engine.h"
+
+namespace raypool::cli {
+
+namespace {
+
+std::unique_ptr<Engine> make_engine(const std::string& name, const wavefront::PoolSettings& pool) {
+    if (name == "wavefront") return std::make_unique<wavefront::WavefrontEngine>(pool);
+    if (name == "iterative") return std::make_unique<recursive::IterativeEngine>();
+    return std::make_unique<recursive::RecursiveEngine>();
+}
+
+/// All that fixes the image. Threads, engine and pool do not.
+ImageKey image_key(const Scene& scene, const RenderRecord& record) {
+    const RenderSettings& settings = record.settings;
+    return {{"scene", scene_hash(scene)},
+            {"width", fmt::to_string(scene.width)},
+            {"height", fmt::to_string(scene.height)},
+            {"spp", fmt::to_string(record.spp)},
+            {"depth", fmt::to_string(settings.depth)},
+            {"split_depth", fmt::to_string(settings.split_depth)},
+            {"seed", fmt::to_string(settings.seed)},
+            {"sampler", settings.sampler == Sampler::Sobol ? "sobol" : "independent"},
+            {"roulette", settings.roulette ? "on" : "off"},
+            {"precision", record.precision == Precision::Float ? "float" : "double"},
+            {"target_error", fmt::to_string(record.target_error)}};
+}
+
+/// Renders what `sums` lacks, and keeps checkpoints.
+template <class Scalar>
+RenderReport render_missing(const CompiledScene<Scalar>& scene, const RenderRecord& record, RenderSums& sums,
+                            AdaptiveReport& adaptive, Checkpoint& checkpoint) {
+    const std::unique_ptr<Engine> engine = make_engine(record.engine, record.pool);
+    if (record.target_error > 0) {
+        std::vector<std::int32_t> counts = sums.sample_counts;
+        if (counts.empty()) counts.resize(static_cast<std::size_t>(scene.pixel_count()));
+        AdaptivePlan plan(record.target_error, record.settings.end_sample, std::move(counts), sums.rounds);
+        const auto keep = [&] {
+            sums.sample_counts = plan.sample_counts();
+            sums.rounds = plan.rounds();
+            return checkpoint.keep(sums);
+        };
+        RenderReport report = render_adaptively(*engine, scene, record.settings, plan, sums.framebuffer, keep);
+        adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds()};
+        return report;
+    }
+    RenderReport report;
+    report.threads.resize(static_cast<std::size_t>(record.settings.threads));
+    for (const SampleRange& gap : gaps(sums.ranges, record.settings.end_sample)) {
+        RenderSettings settings = record.settings;
+        settings.first_sample = std::max(gap.first, settings.first_sample);
+        settings.end_sample = gap.end;
+        if (settings.first_sample >= settings.end_sample) continue;
+        if (!checkpoint.is_kept()) {
+            report.add(engine->render(scene, settings, sums.framebuffer));
+            sums.ranges = with_range(std::move(sums.ranges), {settings.first_sample, settings.end_sample});
+            continue;
+        }
+        report.add(render_in_pieces(*engine, scene, settings, sums.framebuffer, [&](const SampleRange& range) {
+            sums.ranges = with_range(std::move(sums.ranges), range);
+            return checkpoint.keep(sums);
+        }));
+        if (checkpoint.stopped_by() != 0) break;
+    }
+    return report;
+}
+
+template <class Scalar>
+Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_quiet, Checkpoint& checkpoint,
+                RenderRecord& record) {
+    Stopwatch watch;
+    const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
+    record.needs = compiled.needs;
+    record.truncation_bound = compiled.truncation_bound(record.settings.depth);
+    record.compile_s = watch.lap();
+
+    const bool is_adaptive = record.target_error > 0;
+    RenderSums sums{image_key(scene, record),
+                    {},
+                    {},
+                    0,
+                    Framebuffer(compiled.width, compiled.height, FixedPoint::make(record.spp, compiled.max_radiance),
+                                is_adaptive ? Moments::Second : Moments::First)};
+    if (options.is_resumed)
+        sums = load_checkpoint(options, sums, {record.settings.first_sample, record.settings.end_sample});
+    Progress progress;
+    record.settings.progress = &progress;
+    progress.paths = compiled.pixel_count() * sums.sample_count();
+    {
+        const ProgressBar bar(progress, path_count(compiled, record.settings), {"M paths/s", 1e-6}, is_quiet);
+        record.report = render_missing(compiled, record, sums, record.adaptive, checkpoint);
+    }
+    checkpoint.write(sums);
+    record.settings.progress = nullptr;
+    record.hash = sums.framebuffer.hash();
+    record.samples_done = is_adaptive ? std::llround(record.adaptive.mean_samples()) : sums.sample_count();
+    return is_adaptive ? sums.framebuffer.image(record.adaptive.sample_counts)
+                       : sums.framebuffer.image(record.samples_done);
+}
+
+}  // namespace
+
+Image render_image(const Scene& scene, const CheckpointOptions& options, bool is_quiet, Checkpoint& checkpoint,
+                   RenderRecord& record) {
+    return record.precision == Precision::Double ? render_in<double>(scene, options, is_quiet, checkpoint, record)
+                                                 : render_in<float>(scene, options, is_quiet, checkpoint, record);
+}
+
+}  // namespace raypool::cli

@@ -1,0 +1,16 @@
+/// From a scene to the image and the record of its making, by way of sums that may come from, and go to, a checkpoint.
+#pragma once
+
+#include "cli/checkpoint.h"
+#include "cli/stats_json.h"
+#include "core/image.h"
+#include "core/scene.h"
+
+namespace raypool::cli {
+
+/// Renders what the checkpoint of `options`, if one is resumed, lacks. Reads the settings in `record`, and fills in
+/// what was made. Where the checkpoint was asked to stop, the image is of the samples so far.
+Image render_image(const Scene& scene, const CheckpointOptions& options, bool is_quiet, Checkpoint& checkpoint,
+                   RenderRecord& record);
+
+}  // namespace raypool::cli

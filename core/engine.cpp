@@ -1,0 +1,26 @@
+#include "core/engine.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace raypool {
+
+void RenderReport::add(const RenderReport& later) {
+    seconds += later.seconds;
+    if (threads.size() < later.threads.size()) threads.resize(later.threads.size());
+    for (std::size_t i = 0; i < later.threads.size(); ++i) threads[i].add(later.threads[i]);
+    audit.add(later.audit);
+    rounds.insert(rounds.end(), later.rounds.begin(), later.rounds.end());
+    record_bytes = std::max(record_bytes, later.record_bytes);
+    pool_bytes = std::max(pool_bytes, later.pool_bytes);
+}
+
+void check_settings(const RenderSettings& settings, const Framebuffer& framebuffer) {
+    if (framebuffer.has_squares() && settings.split_depth > 0)
+        throw InputError(
+            "--split-depth: a sample that splits reaches its pixel in parts, so its square, which --target-error "
+            "needs, is not known");
+}
+
+}  // namespace raypool

@@ -1,0 +1,218 @@
+#include "core/sums_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <span>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <xxhash.h>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/output_file.h"
+#include "core/settings_text.h"
+
+namespace raypool {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kFormat = "raypool sums";
+constexpr int kVersion = 1;
+constexpr std::size_t kChecksumLength = 16;
+constexpr std::size_t kMostHeaderBytes = 1 << 20;
+constexpr std::int64_t kMostPixels = std::int64_t{1} << 32;
+
+std::string checksum(std::string_view bytes) {
+    return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+}
+
+json header_of(const RenderSums& sums) {
+    const Framebuffer& framebuffer = sums.framebuffer;
+    json key = json::array();
+    for (const auto& [name, value] : sums.key) key.push_back({name, value});
+    json ranges = json::array();
+    for (const SampleRange& range : sums.ranges) ranges.push_back({range.first, range.end});
+    const FixedPoint& fixed = framebuffer.fixed_point();
+    return {{"format", kFormat},
+            {"version", kVersion},
+            {"key", key},
+            {"ranges", ranges},
+            {"rounds", sums.rounds},
+            {"width", framebuffer.width()},
+            {"height", framebuffer.height()},
+            {"fraction_bits", fixed.fraction_bits},
+            {"square_bits", fixed.square_bits},
+            {"limit_bits", std::ilogb(fixed.limit)},
+            {"has_squares", framebuffer.has_squares()},
+            {"has_counts", !sums.sample_counts.empty()}};
+}
+
+template <class T>
+void append(std::string& text, std::span<const T> values) {
+    text.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+}
+
+/// Takes values off the front of `bytes`, which has enough.
+template <class T>
+void take(std::string_view& bytes, std::span<T> values) {
+    std::memcpy(values.data(), bytes.data(), values.size_bytes());
+    bytes.remove_prefix(values.size_bytes());
+}
+
+std::string read_bytes(const std::filesystem::path& path) {
+    std::error_code error;
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+        throw InputError(fmt::format("{}: not a file", path.string()));  // a device may never end
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) throw InputError(fmt::format("{}: cannot open: {}", path.string(), std::strerror(errno)));
+    std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    if (stream.bad()) throw InputError(fmt::format("{}: cannot read", path.string()));
+    return bytes;
+}
+
+/// Throws json::exception for a header that is not as header_of() makes it.
+RenderSums parsed(const json& header, std::string_view payload) {
+    const auto whole = [&](const char* name, std::int64_t least, std::int64_t most) {
+        const auto value = header.at(name).get<std::int64_t>();
+        if (value < least || value > most) throw InputError(fmt::format("{} is {}", name, value));
+        return value;
+    };
+    const std::int64_t width = whole("width", 1, kMostPixels);
+    const std::int64_t height = whole("height", 1, kMostPixels / width);
+    const bool has_squares = header.at("has_squares").get<bool>();
+    const bool has_counts = header.at("has_counts").get<bool>();
+    const auto pixels = static_cast<std::size_t>(width * height);
+    const std::size_t bytes = pixels * ((has_squares ? 4 : 3) * sizeof(std::int64_t) + (has_counts ? 4 : 0));
+    if (payload.size() != bytes)
+        throw InputError(fmt::format("{} bytes of sums in place of {}", payload.size(), bytes));
+
+    const FixedPoint fixed{static_cast<int>(whole("fraction_bits", -1100, 1100)),
+                           std::ldexp(1.0, static_cast<int>(whole("limit_bits", -1000, 1000))),
+                           static_cast<int>(whole("square_bits", -2200, 2200))};
+    RenderSums sums{{},
+                    {},
+                    std::vector<std::int32_t>(has_counts ? pixels : 0),
+                    static_cast<int>(whole("rounds", 0, 1 << 30)),
+                    Framebuffer(width, height, fixed, has_squares ? Moments::Second : Moments::First)};
+    for (const json& pair : header.at("key"))
+        sums.key.emplace_back(pair.at(0).get<std::string>(), pair.at(1).get<std::string>());
+    for (const json& pair : header.at("ranges")) {
+        const SampleRange range{pair.at(0).get<std::int64_t>(), pair.at(1).get<std::int64_t>()};
+        if (range.first < 0 || range.end <= range.first) throw InputError("a range of samples is empty");
+        sums.ranges = with_range(std::move(sums.ranges), range);
+    }
+    take(payload, sums.framebuffer.sums());
+    take(payload, sums.framebuffer.squares());
+    take(payload, std::span(sums.sample_counts));
+    if (std::any_of(sums.sample_counts.begin(), sums.sample_counts.end(), [](std::int32_t count) { return count < 0; }))
+        throw InputError("a pixel has fewer than no samples");
+    return sums;
+}
+
+}  // namespace
+
+std::string difference(const ImageKey& found, const ImageKey& wanted) {
+    for (std::size_t i = 0; i < std::min(found.size(), wanted.size()); ++i) {
+        if (found[i].first != wanted[i].first) return fmt::format("{}, not {}", found[i].first, wanted[i].first);
+        if (found[i].second != wanted[i].second)
+            return fmt::format("{} {}, not {}", found[i].first, found[i].second, wanted[i].second);
+    }
+    return found.size() == wanted.size() ? "" : "another number of settings";
+}
+
+std::int64_t whole_number(const ImageKey& key, std::string_view name, std::int64_t least, std::int64_t most) {
+    for (const auto& [own_name, value] : key)
+        if (own_name == name)
+            if (const auto number = parse_integer(value, least, most)) return *number;
+    throw InputError(fmt::format("its {} is no whole number from {} to {}", name, least, most));
+}
+
+void check_same_render(const RenderSums& found, const RenderSums& wanted) {
+    if (const std::string differs = difference(found.key, wanted.key); !differs.empty())
+        throw InputError(fmt::format("of a render with {}", differs));
+    const Framebuffer& a = found.framebuffer;
+    const Framebuffer& b = wanted.framebuffer;
+    const auto is_adaptive = [](const RenderSums& sums) { return sums.framebuffer.has_squares(); };
+    if (a.width() != b.width() || a.height() != b.height() || a.fixed_point() != b.fixed_point() ||
+        is_adaptive(found) != is_adaptive(wanted) || (!is_adaptive(found) && !found.sample_counts.empty()))
+        throw InputError("its sums are not of the render that it says");
+}
+
+std::int64_t RenderSums::sample_count() const {
+    std::int64_t count = 0;
+    for (const SampleRange& range : ranges) count += range.end - range.first;
+    return count;
+}
+
+std::vector<SampleRange> with_range(std::vector<SampleRange> ranges, const SampleRange& more) {
+    for (const SampleRange& range : ranges)
+        if (more.first < range.end && range.first < more.end)
+            throw InputError(fmt::format("samples {} to {} are there already", std::max(more.first, range.first),
+                                         std::min(more.end, range.end)));
+    const auto at = std::lower_bound(ranges.begin(), ranges.end(), more,
+                                     [](const SampleRange& a, const SampleRange& b) { return a.first < b.first; });
+    ranges.insert(at, more);
+    std::vector<SampleRange> joined;
+    for (const SampleRange& range : ranges) {
+        if (!joined.empty() && joined.back().end == range.first) {
+            joined.back().end = range.end;
+        } else {
+            joined.push_back(range);
+        }
+    }
+    return joined;
+}
+
+std::vector<SampleRange> gaps(const std::vector<SampleRange>& ranges, std::int64_t end) {
+    std::vector<SampleRange> missing;
+    std::int64_t next = 0;
+    for (const SampleRange& range : ranges) {
+        if (next < range.first) missing.push_back({next, range.first});
+        next = range.end;
+    }
+    if (next < end) missing.push_back({next, end});
+    return missing;
+}
+
+void write_sums(const std::filesystem::path& path, const RenderSums& sums) {
+    std::string text = header_of(sums).dump() + "\n";
+    append<std::int64_t>(text, sums.framebuffer.sums());
+    append<std::int64_t>(text, sums.framebuffer.squares());
+    append<std::int32_t>(text, sums.sample_counts);
+    text += checksum(text);
+    write_whole(path, std::as_bytes(std::span(text)));
+}
+
+RenderSums read_sums(const std::filesystem::path& path) {
+    const std::string bytes = read_bytes(path);
+    const auto refuse = [&](std::string_view why) -> InputError {
+        return InputError(fmt::format("{}: {}", path.string(), why));
+    };
+    std::string_view text = bytes;
+    const std::size_t line = text.substr(0, kMostHeaderBytes).find('\n');
+    const json header = line == std::string_view::npos ? json() : json::parse(text.substr(0, line), nullptr, false);
+    if (!header.is_object() || header.value("format", json()) != kFormat)
+        throw refuse("not a checkpoint or part of a render, or its beginning is damaged");
+    if (header.value("version", json()) != kVersion)
+        throw refuse(fmt::format("of version {}, this program reads version {}", header.value("version", json()).dump(),
+                                 kVersion));
+    if (text.size() < line + 1 + kChecksumLength ||
+        checksum(text.substr(0, text.size() - kChecksumLength)) != text.substr(text.size() - kChecksumLength))
+        throw refuse("damaged: its checksum is wrong");
+    text.remove_suffix(kChecksumLength);
+    try {
+        return parsed(header, text.substr(line + 1));
+    } catch (const json::exception& error) {
+        throw refuse(error.what());
+    } catch (const InputError& error) {
+        throw refuse(error.what());
+    }
+}
+
+}  // namespace raypool

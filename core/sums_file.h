@@ -1,0 +1,62 @@
+/// A render on disk, exact: the integer sums of its samples so far, and which samples those are.
+///
+/// It is what a checkpoint is, and a part: `render --checkpoint` and `render --part` write it, `render --resume` and
+/// `merge` read it. Integer sums add up exactly, so a render that was interrupted, split or merged ends in the bits of
+/// one that was not.
+///
+/// A file is a line of JSON, the sums, and 16 hexadecimal digits over all before them (XXH3). It appears whole or not
+/// at all (output_file.h). A file that is short, long, damaged, or of a later version is refused by name (InputError);
+/// no more is allocated than its own size calls for.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/framebuffer.h"
+
+namespace raypool {
+
+/// Samples [first, end) of every pixel.
+struct SampleRange {
+    std::int64_t first;
+    std::int64_t end;
+    bool operator==(const SampleRange&) const = default;
+};
+
+/// Everything that fixes the image, by name: two renders with the same key add up, others must not.
+using ImageKey = std::vector<std::pair<std::string, std::string>>;
+
+/// The first thing in which two keys differ, "depth 50, not 20"; empty where they agree.
+std::string difference(const ImageKey& found, const ImageKey& wanted);
+
+/// The value of a whole number in a key; InputError where it is none, or not in [least, most].
+std::int64_t whole_number(const ImageKey& key, std::string_view name, std::int64_t least, std::int64_t most);
+
+struct RenderSums {
+    ImageKey key;
+    std::vector<SampleRange> ranges;  ///< rising and apart: those that touch are one. Empty for an adaptive render
+    std::vector<std::int32_t> sample_counts;  ///< of an adaptive render, by pixel
+    int rounds = 0;                           ///< of an adaptive render
+    Framebuffer framebuffer;
+
+    [[nodiscard]] std::int64_t sample_count() const;
+};
+
+/// Throws InputError, saying what differs, unless the sums of both can be added up: one key, size and fixed point, and
+/// both adaptive or neither. A file is not believed to have what its key says.
+void check_same_render(const RenderSums& found, const RenderSums& wanted);
+
+/// `ranges` with one more; throws InputError where samples would be there twice.
+std::vector<SampleRange> with_range(std::vector<SampleRange> ranges, const SampleRange& more);
+
+/// What of [0, end) is in none of the ranges.
+std::vector<SampleRange> gaps(const std::vector<SampleRange>& ranges, std::int64_t end);
+
+void write_sums(const std::filesystem::path& path, const RenderSums& sums);
+RenderSums read_sums(const std::filesystem::path& path);
+
+}  // namespace raypool

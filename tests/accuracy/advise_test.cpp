@@ -1,0 +1,135 @@
+/// The promises of advice: kept by fresh renders with other seeds. Costs are counted, not timed, so nothing here
+/// depends on the machine.
+#include "bench/accuracy/advise.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "bench/accuracy/reference.h"
+#include "core/error.h"
+#include "tests/small_render.h"
+
+namespace raypool::accuracy {
+namespace {
+
+constexpr double kSecondsPerSegment = 1e-6;
+
+AdviseOptions counted() {
+    AdviseOptions options;
+    options.cost = [](const RenderReport& report) {
+        return kSecondsPerSegment * static_cast<double>(report.segments());
+    };
+    return options;
+}
+
+struct Promise {
+    const char* scene;
+    std::vector<double> errors;
+};
+
+class AdvisePromise : public testing::TestWithParam<Promise> {};
+
+TEST_P(AdvisePromise, IsKeptInNineOfTenFreshRunsAtThreeTargets) {
+    const Scene description = small_scene(GetParam().scene, 32);
+    const auto scene = std::make_shared<const SceneInBoth>(description);
+    Reference reference(scene, 16384, {}, 2);
+    for (const double error : GetParam().errors) {
+        const Offer best = advise(description, {error, {}}, counted()).offers.front();
+        int kept = 0;
+        double mean_square = 0;
+        for (std::uint64_t seed = 100; seed < 110; ++seed) {
+            const Values image = render_image(best.pilot.configuration, *scene, {0, best.spp, seed, 2}).values;
+            const double mse = corrected_mse(image, reference.halves());
+            kept += mse <= error * error ? 1 : 0;
+            mean_square += mse / 10;
+        }
+        const std::string text = to_string(best.pilot.configuration);
+        EXPECT_GE(kept, 9) << text << ", " << best.spp << " spp for " << error;
+        EXPECT_GT(std::sqrt(mean_square), 0.5 * error) << "and not by waste: " << text << ", " << best.spp << " spp";
+        EXPECT_GE(std::sqrt(mean_square), 0.9 * best.error_interval.low) << text;
+        EXPECT_LE(std::sqrt(mean_square), 1.1 * best.error_interval.high) << text;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, AdvisePromise,
+                         testing::Values(Promise{"paper", {0.05, 0.02, 0.01}},
+                                         Promise{"glass_stack", {0.05, 0.02, 0.01}},
+                                         Promise{"half_sky", {0.02, 0.01, 0.005}}),
+                         [](const auto& info) { return info.param.scene; });
+
+TEST(Advise, WithABudgetPlansNoMoreThanItAndPromisesLessErrorForMore) {
+    const Scene scene = small_scene("paper", 32);
+    double before = 1e9;
+    for (const double seconds : {0.02, 0.2, 2.0}) {
+        const Offer best = advise(scene, {{}, seconds}, counted()).offers.front();
+        EXPECT_LE(best.seconds, seconds);
+        EXPECT_GT(best.seconds, 0.5 * seconds) << "and uses it";
+        EXPECT_LT(best.error, before);
+        before = best.error;
+    }
+}
+
+TEST(Advise, TakesNoDepthWhoseBiasIsBeyondTheTarget) {
+    const Advice advice = advise(small_scene("glass_stack", 32), {0.01, {}}, counted());
+    for (const Offer& offer : advice.offers) {
+        EXPECT_GT(offer.pilot.configuration.depth, 5);
+        EXPECT_LT(offer.pilot.bias.value, 0.01 * 0.01);
+    }
+    for (const Simplification& s : advice.simplifications) {
+        if (s.text.starts_with("depth 5 ")) {
+            EXPECT_GT(std::sqrt(s.bias.value), 0.1);
+        }
+        if (s.text.starts_with("float")) {
+            EXPECT_LT(std::sqrt(std::max(s.bias.value, 0.0)), 1e-3);
+        }
+    }
+}
+
+TEST(Advise, TriesSplittingOnlyWhereThereIsGlass) {
+    const auto tries_splitting = [](const char* scene) {
+        for (const Simplification& s : advise(small_scene(scene, 16), {0.1, {}}, counted()).simplifications)
+            if (s.text.find("glass") != std::string::npos) return true;
+        return false;
+    };
+    EXPECT_TRUE(tries_splitting("glass_stack"));
+    EXPECT_FALSE(tries_splitting("one_sphere"));
+}
+
+TEST(Advise, RefusesWhatNoNumberOfSamplesReaches) {
+    const Scene scene = small_scene("paper", 16);
+    EXPECT_THROW(advise(scene, {1e-9, {}}, counted()), InputError);
+    EXPECT_THROW(advise(scene, {{}, 1e-6}, counted()), InputError);
+}
+
+struct SamplesCase {
+    const char* what;
+    double slope;
+    Estimate bias;
+    double error;
+    std::int64_t samples;  ///< 0: none
+};
+class SamplesFor : public testing::TestWithParam<SamplesCase> {};
+
+TEST_P(SamplesFor, AreWhatTheNoiseLeftBesideTheBiasAsksFor) {
+    const SamplesCase& c = GetParam();
+    const Pilot pilot{{}, 16, std::vector<double>(8, 0.01), std::vector<double>(8, 1), c.slope, c.bias};
+    const auto samples = samples_for(pilot, {c.error, {}});
+    EXPECT_EQ(samples.value_or(0), c.samples) << c.what;
+    if (samples) {
+        EXPECT_LE(pilot.most_error(static_cast<double>(*samples)), c.error * (1 + 1e-12));
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Cases, SamplesFor,
+                         testing::Values(SamplesCase{"the pilot's own error", -1, {}, 0.1, 16},
+                                         SamplesCase{"half of it", -1, {}, 0.05, 64},
+                                         SamplesCase{"a steeper slope", -1.25, {}, 0.1 / 31.999, 16 * 256},
+                                         SamplesCase{"a bias of most of it", -1, {0.0075, 0}, 0.1, 64},
+                                         SamplesCase{"a bias that may be", -1, {0, 0.00375}, 0.1, 64},
+                                         SamplesCase{"a bias beyond it", -1, {0.0101, 0}, 0.1, 0},
+                                         SamplesCase{"far more than it needs", -1, {}, 10, 1},
+                                         SamplesCase{"too many", -1, {}, 1e-9, 0}),
+                         [](const auto& info) { return std::to_string(info.index); });
+
+}  // namespace
+}  // namespace raypool::accuracy

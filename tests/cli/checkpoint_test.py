@@ -1,0 +1,211 @@
+"""Checkpoints, parts and what happens to them: a render ends in the same bits, or says why it does not.
+
+RAYPOOL_KILLS=50 kills a render so many times (a few, where it is not set). The last test prints the table of faults.
+"""
+
+import ctypes
+import ctypes.util
+import json
+import os
+import random
+import resource
+import signal
+import subprocess
+import time
+
+from command import CommandTest, main
+
+def xxhash(content):
+    """The 16 hexadecimal digits of XXH3."""
+    library = ctypes.CDLL(ctypes.util.find_library("xxhash"))
+    library.XXH3_64bits.restype = ctypes.c_uint64
+    library.XXH3_64bits.argtypes = (ctypes.c_char_p, ctypes.c_size_t)
+    return f"{library.XXH3_64bits(content, len(content)):016x}".encode()
+
+
+def render(**changes):
+    """The arguments of the render that tests interrupt, some of them changed."""
+    options = {"width": 120, "spp": 300, "threads": 2, **changes}
+    return ("render", "paper", *(text for name, value in options.items() for text in ("--" + name, str(value))))
+
+
+RENDER = render()
+
+
+class CheckpointTest(CommandTest):
+    table = []
+
+    def whole(self):
+        return self.hash_of(self.run_well(*RENDER))
+
+    def hash_of(self, result):
+        return result.stdout.split("hash ")[1].split()[0]
+
+    def start(self, *arguments):
+        return subprocess.Popen([self.command, *arguments, "--every", "0"], cwd=self.folder, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True)
+
+    def wait_for(self, name, process):
+        """Until the file is there, which the process must outlive."""
+        while not (self.folder / name).exists():
+            self.assertIsNone(process.poll(), "ended before its first checkpoint")
+            time.sleep(0.005)
+
+    def note(self, fault, tries, lost, wrong):
+        self.table.append((fault, tries, lost, wrong))
+        self.assertEqual((lost, wrong), (0, 0), fault)
+
+    def test_signal_leaves_a_checkpoint_and_a_picture_and_says_how_to_go_on(self):
+        expected = self.whole()
+        for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
+            (self.folder / "c.sums").unlink(missing_ok=True)
+            process = self.start(*RENDER, "--checkpoint", "c.sums", "-o", "part.pfm")
+            self.wait_for("c.sums", process)
+            process.send_signal(number)
+            _, error = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, status)
+            self.assertIn("--resume", error)
+            self.assertTrue((self.folder / "part.pfm").exists())
+            for engine in ("wavefront", "iterative"):
+                result = self.run_well(*render(threads=3, engine=engine), "--checkpoint", "c.sums", "--resume")
+                self.assertEqual(self.hash_of(result), expected)
+
+    def test_second_signal_ends_at_once_with_the_last_checkpoint_whole(self):
+        process = self.start(*render(spp=100000), "--checkpoint", "c.sums")
+        self.wait_for("c.sums", process)
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.002)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertIn(process.returncode, (-signal.SIGINT, 130))
+        self.run_command("merge", "c.sums", "--checkpoint", "copy.sums")
+        self.assertTrue((self.folder / "copy.sums").exists())
+
+    def test_kill_at_any_moment_loses_nothing_that_was_kept(self):
+        expected = self.whole()
+        chance = random.Random(1)
+        kills = int(os.environ.get("RAYPOOL_KILLS", "4"))
+        lost = wrong = 0
+        for _ in range(kills):
+            (self.folder / "c.sums").unlink(missing_ok=True)
+            for _ in range(3):
+                more = ("--resume",) if (self.folder / "c.sums").exists() else ()
+                process = self.start(*RENDER, "--checkpoint", "c.sums", *more)
+                time.sleep(chance.uniform(0, 0.25))
+                process.kill()
+                process.communicate(timeout=60)
+            more = ("--resume",) if (self.folder / "c.sums").exists() else ()
+            result = self.run_command(*RENDER, "--checkpoint", "c.sums", *more)
+            lost += result.returncode != 0
+            wrong += result.returncode == 0 and self.hash_of(result) != expected
+        self.note("kill -9, three times a render", kills, lost, wrong)
+
+    def test_adaptive_render_goes_on_where_it_was(self):
+        adaptive = ("render", "half_sky", "--width", "100", "--target-error", "0.002", "--spp", "20000")
+        expected = self.hash_of(self.run_well(*adaptive))
+        process = self.start(*adaptive, "--checkpoint", "a.sums")
+        self.wait_for("a.sums", process)
+        process.kill()
+        process.communicate()
+        result = self.run_well(*adaptive, "--checkpoint", "a.sums", "--resume", "--engine", "wavefront")
+        self.assertEqual(self.hash_of(result), expected)
+        self.assert_refused("merge", "a.sums", named=["a.sums", "adaptive"])
+
+    def test_full_disk_is_an_error_and_leaves_the_last_checkpoint(self):
+        expected = self.whole()
+        self.run_well(*RENDER, "--samples", "0:10", "--checkpoint", "c.sums")
+        before = (self.folder / "c.sums").read_bytes()
+        limit = (len(before) // 2, len(before) // 2)
+        result = self.run_command(*RENDER, "--checkpoint", "c.sums", "--resume", "--every", 0,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit))
+        self.assert_one_line(result, 2, "c.sums", "cannot write")
+        wrong = (self.folder / "c.sums").read_bytes() != before
+        lost = self.hash_of(self.run_well(*RENDER, "--checkpoint", "c.sums", "--resume")) != expected
+        self.note("no room for the file (RLIMIT_FSIZE)", 1, int(lost), int(wrong))
+        self.assertEqual(set(self.listing()), {"c.sums", "scene.json"})
+
+    def test_output_to_a_full_device_is_an_error(self):
+        self.assert_one_line(self.run_command(*render(spp=1), "-o", "/dev/full"), 2, "/dev/full")
+        self.assert_one_line(self.run_command(*render(spp=1), "--checkpoint", "/dev/full"), 2, "/dev/full")
+
+    def test_memory_that_is_not_there_is_an_error(self):
+        result = self.run_command("render", "paper", "--width", 20000, "--spp", 1, "--threads", 1,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30)))
+        self.assert_one_line(result, 1, "memory")
+
+    def test_parts_in_any_order_are_the_whole(self):
+        expected = self.whole()
+        parts = ["0:100", "100:101", "101:260", "260:300"]
+        for part, engine in zip(parts, ("recursive", "wavefront", "iterative", "wavefront")):
+            self.run_well(*RENDER, "--samples", part, "--engine", engine, "--checkpoint", f"{part}.sums")
+        for order in (parts, parts[::-1], [parts[2], parts[0], parts[3], parts[1]]):
+            result = self.run_well("merge", *(f"{part}.sums" for part in order), "-o", "merged.pfm")
+            self.assertEqual(self.hash_of(result), expected)
+        self.run_well(*RENDER, "-o", "whole.pfm")
+        self.assertEqual((self.folder / "merged.pfm").read_bytes(), (self.folder / "whole.pfm").read_bytes())
+
+        result = self.run_command("merge", "0:100.sums", "260:300.sums")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("100 to 260 are missing", result.stderr)
+        self.assert_refused("merge", "0:100.sums", "0:100.sums", named=["0:100.sums", "there already"])
+        self.run_well(*RENDER, "--seed", 1, "--samples", "100:300", "--checkpoint", "other.sums")
+        self.assert_refused("merge", "0:100.sums", "other.sums", named=["other.sums", "seed"])
+
+    def test_complete_checkpoint_is_the_image_and_says_that_nothing_was_missing(self):
+        first = self.run_well(*RENDER, "--checkpoint", "c.sums", "-o", "a.pfm")
+        again = self.run_well(*RENDER, "--checkpoint", "c.sums", "--resume", "-o", "b.pfm", "--stats", "s.json")
+        self.assertEqual(self.hash_of(again), self.hash_of(first))
+        self.assertIn("no sample was missing", again.stdout)
+        self.assertNotIn("nan", again.stdout)
+        self.assertEqual((self.folder / "a.pfm").read_bytes(), (self.folder / "b.pfm").read_bytes())
+        stats = json.loads((self.folder / "s.json").read_text())
+        self.assertEqual((stats["paths"], stats["samples_done"]), (0, 300))
+
+    def test_file_that_lies_about_its_sums_is_refused(self):
+        """Its checksum is right, its key too; its sums are another image's."""
+        self.run_well(*render(width=60), "--samples", "0:1", "--checkpoint", "small.sums")
+        self.run_well(*RENDER, "--samples", "1:2", "--checkpoint", "good.sums")
+        small = (self.folder / "small.sums").read_bytes()
+        header = json.loads(small.split(b"\n", 1)[0])
+        header["key"] = json.loads((self.folder / "good.sums").read_bytes().split(b"\n", 1)[0])["key"]
+        forged = json.dumps(header).encode() + b"\n" + small.split(b"\n", 1)[1][:-16]
+        checksum = xxhash(forged)
+        (self.folder / "forged.sums").write_bytes(forged + checksum)
+        self.assert_refused("merge", "good.sums", "forged.sums", named=["forged.sums", "its sums"])
+        self.assert_refused(*RENDER, "--checkpoint", "forged.sums", "--resume", named=["forged.sums", "its sums"])
+
+    def test_what_never_ends_is_not_read(self):
+        for path in ("/dev/zero", "."):
+            self.assert_refused("merge", path, named=path, timeout=20)
+
+    def test_trace_of_a_render_in_pieces_has_all_of_them(self):
+        for options, passes in (((*RENDER, "--checkpoint", "c.sums"), 3), (render(**{"target-error": 0.02}), 2)):
+            self.run_well(*options, "--trace", "t.json")
+            events = json.loads((self.folder / "t.json").read_text())["traceEvents"]
+            lines = [event for event in events if event.get("name") == "line" and event["args"]["y"] == 0]
+            self.assertGreaterEqual(len(lines), passes)
+
+    def test_what_makes_no_sense_is_refused(self):
+        self.run_well(*RENDER, "--samples", "0:1", "--checkpoint", "c.sums")
+        self.assert_refused(*RENDER, "--checkpoint", "c.sums", named=["c.sums", "--resume"])
+        self.assert_refused(*RENDER, "--resume", named="--checkpoint")
+        self.assert_refused(*RENDER, "--samples", "5:9", "--checkpoint", "c.sums", "--resume",
+                            named=["c.sums", "0 to 1", "--samples"])
+        for setting, value in (("seed", 5), ("depth", 7), ("spp", 301), ("width", 121), ("split-depth", 1),
+                               ("precision", "double"), ("target-error", 0.1)):
+            self.assert_refused(*render(**{setting: value}), "--checkpoint", "c.sums", "--resume",
+                                named=["c.sums", "scene" if setting == "width" else setting.replace("-", "_")])
+        self.assert_refused("render", "cornell", *RENDER[2:], "--checkpoint", "c.sums", "--resume", named="scene")
+        (self.folder / "bad.sums").write_text("{}\n")
+        self.assert_refused("merge", "bad.sums", named="bad.sums")
+        self.assert_refused(*RENDER, "--checkpoint", "absent/c.sums", named="absent")
+
+    @classmethod
+    def tearDownClass(cls):
+        for fault, tries, lost, wrong in cls.table:
+            print(f"| {fault} | {tries} | {lost} | {wrong} |")
+        super().tearDownClass()
+
+
+if __name__ == "__main__":
+    main()

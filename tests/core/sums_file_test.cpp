@@ -1,0 +1,122 @@
+/// A render on disk comes back bit by bit, and nothing else passes for one.
+#include "core/sums_file.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/core/scratch_folder.h"
+#include "tests/random_inputs.h"
+
+namespace raypool::test {
+namespace {
+
+RenderSums some_sums(Moments moments, std::int64_t width = 3, std::int64_t height = 1) {
+    RenderSums sums{{{"scene", "0123"}, {"spp", "40"}},
+                    {{0, 5}, {7, 40}},
+                    {},
+                    0,
+                    Framebuffer(width, height, FixedPoint::make(40, 2.5), moments)};
+    RandomInputs random(1);
+    for (std::int64_t& sum : sums.framebuffer.sums()) sum = static_cast<std::int64_t>(random.bits() >> 2U);
+    for (std::int64_t& square : sums.framebuffer.squares()) square = static_cast<std::int64_t>(random.bits() >> 2U);
+    if (moments == Moments::Second) {
+        sums.ranges.clear();
+        sums.sample_counts.assign(static_cast<std::size_t>(width * height), 17);
+        sums.rounds = 3;
+    }
+    return sums;
+}
+
+std::string bytes_of(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
+    std::ofstream(path, std::ios::binary) << bytes;
+}
+
+class SumsFile : public testing::Test {
+  protected:
+    ScratchFolder folder_;
+    std::filesystem::path path_ = folder_.path() / "a.sums";
+};
+
+TEST_F(SumsFile, ComesBackBitByBit) {
+    for (const Moments moments : {Moments::First, Moments::Second}) {
+        const RenderSums sums = some_sums(moments, 5, 4);
+        write_sums(path_, sums);
+        const RenderSums back = read_sums(path_);
+        EXPECT_EQ(back.key, sums.key);
+        EXPECT_EQ(back.ranges, sums.ranges);
+        EXPECT_EQ(back.sample_counts, sums.sample_counts);
+        EXPECT_EQ(back.rounds, sums.rounds);
+        EXPECT_EQ(back.framebuffer.hash(), sums.framebuffer.hash());
+        EXPECT_EQ(back.framebuffer.fixed_point().limit, sums.framebuffer.fixed_point().limit);
+        EXPECT_EQ(back.framebuffer.has_squares(), moments == Moments::Second);
+    }
+}
+
+TEST_F(SumsFile, CutAtAnyLengthIsRefusedByItsName) {
+    write_sums(path_, some_sums(Moments::Second));
+    const std::string whole = bytes_of(path_);
+    for (std::size_t length = 0; length < whole.size(); ++length) {
+        write_bytes(path_, std::string_view(whole).substr(0, length));
+        try {
+            static_cast<void>(read_sums(path_));
+            FAIL() << length << " of " << whole.size() << " bytes were taken for a whole";
+        } catch (const InputError& error) {
+            ASSERT_NE(std::string(error.what()).find("a.sums"), std::string::npos) << error.what();
+        }
+    }
+    write_bytes(path_, whole + "0");
+    EXPECT_THROW(static_cast<void>(read_sums(path_)), InputError);
+}
+
+TEST_F(SumsFile, WithAnyBitFlippedIsRefused) {
+    write_sums(path_, some_sums(Moments::First));
+    const std::string whole = bytes_of(path_);
+    for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+        std::string damaged = whole;
+        damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
+        write_bytes(path_, damaged);
+        ASSERT_THROW(static_cast<void>(read_sums(path_)), InputError) << "bit " << bit;
+    }
+}
+
+TEST_F(SumsFile, OfALaterVersionIsRefusedByItsVersion) {
+    write_sums(path_, some_sums(Moments::First));
+    std::string text = bytes_of(path_);
+    const std::size_t at = text.find("\"version\":1");
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, 11, "\"version\":2");
+    write_bytes(path_, text);
+    try {
+        static_cast<void>(read_sums(path_));
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("version 2"), std::string::npos) << error.what();
+    }
+}
+
+TEST(SampleRanges, JoinWhereTheyTouchAndAreRefusedWhereTheyOverlap) {
+    std::vector<SampleRange> ranges;
+    for (const SampleRange& range : {SampleRange{10, 20}, {30, 40}, {0, 5}, {20, 30}})
+        ranges = with_range(ranges, range);
+    EXPECT_EQ(ranges, (std::vector<SampleRange>{{0, 5}, {10, 40}}));
+    EXPECT_EQ(gaps(ranges, 50), (std::vector<SampleRange>{{5, 10}, {40, 50}}));
+    EXPECT_TRUE(gaps({{0, 50}}, 50).empty());
+    EXPECT_EQ(gaps({}, 3), (std::vector<SampleRange>{{0, 3}}));
+    for (const SampleRange& range : {SampleRange{4, 6}, {39, 41}, {0, 50}, {15, 16}})
+        EXPECT_THROW(static_cast<void>(with_range(ranges, range)), InputError);
+}
+
+TEST(ImageKeys, NameTheFirstThingInWhichTheyDiffer) {
+    EXPECT_EQ(difference({{"spp", "4"}, {"seed", "0"}}, {{"spp", "4"}, {"seed", "0"}}), "");
+    EXPECT_EQ(difference({{"spp", "4"}, {"seed", "0"}}, {{"spp", "4"}, {"seed", "1"}}), "seed 0, not 1");
+    EXPECT_NE(difference({{"spp", "4"}}, {{"spp", "4"}, {"seed", "1"}}), "");
+}
+
+}  // namespace
+}  // namespace raypool::test

@@ -1,0 +1,124 @@
+/// Adaptive renders are one image too: every engine, thread count, pool and accumulator makes the same passes.
+#include "core/adaptive.h"
+
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "core/error.h"
+#include "tests/small_render.h"
+#include "wavefront/engine.h"
+
+namespace raypool {
+namespace {
+
+using namespace wavefront;
+
+struct Adapted {
+    std::string hash;
+    std::vector<std::int32_t> sample_counts;
+    std::int64_t paths;
+    bool operator==(const Adapted&) const = default;
+};
+
+template <class Scalar>
+Adapted adapt(const Engine& engine, const CompiledScene<Scalar>& scene, const RenderSettings& settings, double error) {
+    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, scene.max_radiance),
+                            Moments::Second);
+    AdaptiveReport adaptive;
+    const RenderReport report = render_adaptively(engine, scene, settings, error, framebuffer, adaptive);
+    return {framebuffer.hash(), adaptive.sample_counts, report.paths()};
+}
+
+struct AdaptiveCase {
+    const char* scene;
+    double error;
+};
+
+class AdaptiveImage : public testing::TestWithParam<AdaptiveCase> {};
+
+TEST_P(AdaptiveImage, IsTheSameForEveryEngineThreadCountAndPool) {
+    const CompiledScene<float> scene = compile<float>(small_scene(GetParam().scene, 16));
+    RenderSettings settings;
+    settings.end_sample = 80;
+    const double error = GetParam().error;
+    const Adapted expected = adapt(recursive::RecursiveEngine(), scene, settings, error);
+    const auto [least, most] = std::minmax_element(expected.sample_counts.begin(), expected.sample_counts.end());
+    ASSERT_LT(*least, *most) << "the case must adapt";
+
+    EXPECT_EQ(adapt(recursive::IterativeEngine(), scene, settings, error), expected);
+    for (const int threads : {1, 2, 7}) {
+        settings.threads = threads;
+        settings.schedule = {LoopSchedule::Kind::Dynamic, 1};
+        for (const Grain& grain : {Grain{Grain::Kind::Line}, Grain{Grain::Kind::Pixel}, Grain{Grain::Kind::Tile, 5}}) {
+            settings.grain = grain;
+            ASSERT_EQ(adapt(recursive::RecursiveEngine(), scene, settings, error), expected);
+            for (const std::int64_t rays : {1, 17, 1000, 8192})
+                ASSERT_EQ(adapt(WavefrontEngine({.capacity = rays}), scene, settings, error), expected) << rays;
+        }
+        for (const auto& [refill, rays, accumulator] : {std::tuple{Refill::Drain, 200, Accumulator::AtomicInt64},
+                                                        {Refill::Regenerate, 2000, Accumulator::PrivateInt64},
+                                                        {Refill::Drain, 8192, Accumulator::AtomicPlanarInt64}})
+            ASSERT_EQ(adapt(WavefrontEngine({.scope = PoolScope::Shared,
+                                             .refill = refill,
+                                             .accumulator = accumulator,
+                                             .capacity = rays,
+                                             .batch = 64}),
+                            scene, settings, error),
+                      expected);
+        ASSERT_EQ(adapt(WavefrontEngine({.accumulator = Accumulator::OwnedPlanarInt64}), scene, settings, error),
+                  expected);
+        ASSERT_EQ(adapt(WavefrontEngine({.width = StageWidth::Scalar}), scene, settings, error), expected);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, AdaptiveImage,
+                         testing::Values(AdaptiveCase{"half_sky", 0.012}, AdaptiveCase{"paper", 0.04},
+                                         AdaptiveCase{"cornell", 0.15}, AdaptiveCase{"glass_stack", 0.04}),
+                         [](const auto& param) { return std::string(param.param.scene); });
+
+TEST(AdaptiveEquivalence, DoublePrecisionAgreesToo) {
+    const CompiledScene<double> scene = compile<double>(small_scene("paper", 16));
+    RenderSettings settings;
+    settings.end_sample = 100;
+    const Adapted expected = adapt(recursive::RecursiveEngine(), scene, settings, 0.03);
+    settings.threads = 2;
+    EXPECT_EQ(adapt(WavefrontEngine({}), scene, settings, 0.03), expected);
+}
+
+TEST(AdaptiveEquivalence, ChosenPixelsAreThoseOfAWholeRender) {
+    const CompiledScene<float> scene = compile<float>(small_scene("paper", 24));
+    RenderSettings settings;
+    settings.end_sample = 4;
+    const Rendered whole = render(recursive::RecursiveEngine(), scene, settings);
+    std::vector<std::uint32_t> chosen;
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(scene.pixel_count()); i += 1 + i % 5) chosen.push_back(i);
+    settings.pixels = &chosen;
+    for (const auto& part :
+         {render(recursive::RecursiveEngine(), scene, settings), render(WavefrontEngine({}), scene, settings)}) {
+        std::size_t next = 0;
+        for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(scene.pixel_count()); ++i) {
+            const bool is_chosen = next < chosen.size() && chosen[next] == i;
+            if (is_chosen) ++next;
+            for (std::size_t k = 0; k < 3; ++k)
+                ASSERT_EQ(part.framebuffer.sums()[3 * i + k], is_chosen ? whole.framebuffer.sums()[3 * i + k] : 0);
+        }
+        EXPECT_EQ(part.report.paths(), static_cast<std::int64_t>(4 * chosen.size()));
+    }
+}
+
+TEST(AdaptiveRefusals, NameTheOption) {
+    const CompiledScene<float> scene = compile<float>(small_scene("paper", 8));
+    RenderSettings settings;
+    settings.end_sample = 100;
+    settings.split_depth = 1;
+    EXPECT_THROW(adapt(recursive::RecursiveEngine(), scene, settings, 0.1), InputError);
+    EXPECT_THROW(adapt(WavefrontEngine({}), scene, settings, 0.1), InputError);
+    settings.split_depth = 0;
+    EXPECT_THROW(adapt(WavefrontEngine({.scope = PoolScope::Shared, .accumulator = Accumulator::AtomicDouble}), scene,
+                       settings, 0.1),
+                 InputError);
+}
+
+}  // namespace
+}  // namespace raypool
