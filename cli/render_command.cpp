@@ -81,12 +81,12 @@ RenderSettings render_settings(const RenderOptions& options) {
 }
 
 /// Sums, the image made of them and, where asked for, second moments with their estimates and the checkpoint's bytes
-/// must fit into the machine, before anything is touched.
-void check_memory(const Scene& scene, const RenderOptions& options) {
+/// must fit into the machine, before anything is touched. Each rank on it has its own.
+void check_memory(const Scene& scene, const RenderOptions& options, const cluster::Ranks& ranks) {
     double pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
     if (options.target_error > 0) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
     if (!options.checkpoint.file.empty()) pixel_bytes += 4 * sizeof(std::int64_t) + sizeof(std::int32_t);
-    const double bytes = static_cast<double>(scene.width * scene.height) * pixel_bytes;
+    const double bytes = static_cast<double>(scene.width * scene.height) * pixel_bytes * ranks.on_this_machine();
     const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (bytes > machine)
         throw InputError(
@@ -127,7 +127,7 @@ void print_work(const RenderSettings& settings, const RenderReport& report) {
     }
     fmt::print("{:.3f} M paths, {:.3f} M segments ({:.3f} a path) in {:.3f} s: {:.3f} M paths/s, {:.1f} ns a segment\n",
                paths * 1e-6, segments * 1e-6, segments / paths, report.seconds, paths / report.seconds * 1e-6,
-               segments == 0 ? 0 : report.seconds * 1e9 * settings.threads / segments);
+               segments == 0 ? 0 : report.seconds * 1e9 * static_cast<double>(report.threads.size()) / segments);
     if (settings.count_work)
         fmt::print("{:.2f} box tests and {:.2f} primitive tests a segment\n",
                    static_cast<double>(report.total(&ThreadWork::box_tests)) / segments,
@@ -141,7 +141,8 @@ void print_summary(const RenderRecord& record) {
                record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth,
                settings.roulette ? " and roulette" : "", settings.sampler == Sampler::Sobol ? "sobol, " : "",
                settings.seed, record.precision == Precision::Float ? "float" : "double");
-    fmt::print("{} engine: {} thread{}, grain {}, schedule {}\n", record.engine, settings.threads,
+    const std::string ranks = record.ranks.empty() ? "" : fmt::format("{} ranks of ", record.ranks.size());
+    fmt::print("{} engine: {}{} thread{}, grain {}, schedule {}\n", record.engine, ranks, settings.threads,
                settings.threads == 1 ? "" : "s", to_string(settings.grain), to_string(settings.schedule));
     print_work(settings, report);
     if (record.target_error > 0) {
@@ -171,9 +172,20 @@ void print_trace(const std::string& file, const Trace& trace) {
     fmt::print("\n");
 }
 
-int render(const RenderOptions& options) {
+/// What only one rank can do is for rank 0; what is not gathered from ranks is refused.
+void make_ready(RenderOptions& options, const cluster::Ranks& ranks) {
+    if (ranks.count() > 1)
+        for (const auto& [flag, file] : {std::pair{"--trace", options.trace}, {"--cost-image", options.cost_image}})
+            if (!file.empty()) throw InputError(fmt::format("{}: is not made by several ranks", flag));
+    if (ranks.is_first()) return check(options.checkpoint);
+    options.output.clear();
+    options.stats.clear();
+    options.is_quiet = true;
+}
+
+int render(RenderOptions& options, cluster::Ranks& ranks) {
     const Stopwatch total;
-    check(options.checkpoint);
+    make_ready(options, ranks);
     RenderRecord record;
     record.settings = render_settings(options);
     record.spp = options.spp;
@@ -201,7 +213,7 @@ int render(const RenderOptions& options) {
     Stopwatch watch;
     Scene scene = load_scene(options.scene);
     if (options.width != 0) set_width(scene, options.width);
-    check_memory(scene, options);
+    check_memory(scene, options, ranks);
     CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;
     record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.precision));
@@ -210,8 +222,8 @@ int render(const RenderOptions& options) {
     record.height = scene.height;
     record.read_s = watch.seconds();
 
-    Checkpoint checkpoint(options.checkpoint);
-    const Image image = render_image(scene, options.checkpoint, options.is_quiet, checkpoint, record);
+    Checkpoint checkpoint(options.checkpoint, ranks);
+    const Image image = render_image(scene, options.checkpoint, options.is_quiet, checkpoint, ranks, record);
     watch.lap();
     if (!options.output.empty()) write_image(options.output, image, image_attributes(record));
     record.write_s = watch.seconds();
@@ -221,7 +233,7 @@ int render(const RenderOptions& options) {
     if (!options.trace.empty()) write_trace(options.trace, trace, image_attributes(record));
 
     const int signal = checkpoint.stopped_by();
-    if (signal != 0)
+    if (signal != 0 && ranks.is_first())
         fmt::print(stderr,
                    "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
                    options.checkpoint.file, record.samples_done);
@@ -236,7 +248,7 @@ int render(const RenderOptions& options) {
 
 }  // namespace
 
-void add_render_command(CLI::App& app, int& status) {
+void add_render_command(CLI::App& app, cluster::Ranks& ranks, int& status) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a scene, print its figures and the hash of its sums");
     command->add_option("scene", options->scene, "Scene file, or the name of a built-in scene (default: paper)");
@@ -294,7 +306,7 @@ void add_render_command(CLI::App& app, int& status) {
     command->add_option("--cost", options->cost, "What is cost there: segments, tests or ns (default: tests)")
         ->check(CLI::IsMember({"segments", "tests", "ns"}));
     command->add_flag("--quiet", options->is_quiet, "Print nothing");
-    command->callback([options, &status] { status = render(*options); });
+    command->callback([options, &ranks, &status] { status = render(*options, ranks); });
 }
 
 }  // namespace raypool::cli

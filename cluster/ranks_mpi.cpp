@@ -1,0 +1,166 @@
+#include <mpi.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "cluster/ranks.h"
+#include "core/error.h"
+
+namespace raypool::cluster {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr int kAskTag = 1;
+constexpr int kAnswerTag = 2;
+constexpr std::int64_t kNoneLeft = -1;
+
+/// A message's most elements: MPI counts in int, and a reduction holds a second copy of what is under way.
+constexpr std::size_t kChunk = std::size_t{1} << 20;
+
+bool is_launched() {
+    constexpr const char* kMarks[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
+    return std::any_of(std::begin(kMarks), std::end(kMarks), [](const char* name) { return std::getenv(name); });
+}
+
+template <class Element, class Call>
+void in_chunks(std::span<Element> values, Call call) {
+    for (; !values.empty(); values = values.subspan(std::min(kChunk, values.size())))
+        call(values.data(), static_cast<int>(std::min(kChunk, values.size())));
+}
+
+/// Answers those who ask for work until each has been told that none is left.
+///
+/// A thread of rank 0 does this, because rank 0 computes too: MPI moves only when it is called, and a rank would wait
+/// for an answer as long as rank 0 is busy with a unit. A counter in rank 0's memory (MPI_Fetch_and_op) needs no thread
+/// where the network or shared memory adds by itself, but over TCP it waits just so, and Open MPI 4 has no one-sided
+/// calls over TCP in programs with threads. Messages work everywhere. Meanwhile no other thread of rank 0 calls MPI,
+/// so MPI_THREAD_SERIALIZED will do. The thread looks, rather than wait in MPI, which would spin on a processor: often
+/// while questions come, seldom when all are at work.
+template <class Take>
+void answer(int others, const Take& take, const Ranks::Work& given) {
+    for (Clock::time_point asked = Clock::now(); others > 0;) {
+        int is_asked = 0;
+        MPI_Status status;
+        MPI_Iprobe(MPI_ANY_SOURCE, kAskTag, MPI_COMM_WORLD, &is_asked, &status);
+        if (is_asked == 0) {
+            std::this_thread::sleep_for(std::clamp<Clock::duration>((Clock::now() - asked) / 16, 20us, 1ms));
+            continue;
+        }
+        asked = Clock::now();
+        MPI_Recv(nullptr, 0, MPI_BYTE, status.MPI_SOURCE, kAskTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+        const std::int64_t unit = take();
+        MPI_Send(&unit, 1, MPI_INT64_T, status.MPI_SOURCE, kAnswerTag, MPI_COMM_WORLD);
+        if (unit == kNoneLeft)
+            --others;
+        else
+            given(unit);
+    }
+}
+
+}  // namespace
+
+Ranks::Ranks() {
+    if (!is_launched()) return;
+    int threads = MPI_THREAD_SINGLE;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &threads);
+    is_begun_ = true;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+    MPI_Comm_size(MPI_COMM_WORLD, &count_);
+    MPI_Comm machine = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
+    MPI_Comm_size(machine, &on_this_machine_);
+    MPI_Comm_free(&machine);
+    if (count_ > 1 && threads < MPI_THREAD_SERIALIZED) std::exit(fail(2, "this MPI was built without threads"));
+}
+
+Ranks::~Ranks() {
+    if (is_begun_) MPI_Finalize();
+}
+
+int Ranks::fail(int status, const std::string& text) const {
+    // What all ranks find wrong, rank 0 says: it ends the job while the others sleep.
+    if (!is_first()) std::this_thread::sleep_for(1s);
+    fmt::print(stderr, "raypool: {}{}\n", is_first() ? "" : fmt::format("rank {} of {}: ", rank_, count_), text);
+    if (count_ > 1) MPI_Abort(MPI_COMM_WORLD, status);
+    return status;
+}
+
+void Ranks::hand_out(std::int64_t count, const Work& work, const Work& given) {
+    if (!is_first()) {
+        for (;;) {
+            std::int64_t unit = 0;
+            MPI_Sendrecv(nullptr, 0, MPI_BYTE, 0, kAskTag, &unit, 1, MPI_INT64_T, 0, kAnswerTag, MPI_COMM_WORLD,
+                         MPI_STATUS_IGNORE);
+            if (unit == kNoneLeft) return;
+            work(unit);
+        }
+    }
+    std::atomic<std::int64_t> next = 0;
+    const auto take = [&] {
+        const std::int64_t unit = next++;
+        return unit < count ? unit : kNoneLeft;
+    };
+    const std::jthread clerk([&] { answer(count_ - 1, take, given); });  // joins when all have ended
+    try {
+        for (std::int64_t unit = take(); unit != kNoneLeft; unit = take()) work(unit);
+    } catch (...) {
+        next = count;
+        throw;
+    }
+}
+
+void Ranks::sum_at_first(std::span<std::int64_t> values) {
+    if (count_ == 1) return;
+    in_chunks(values, [this](std::int64_t* from, int size) {
+        MPI_Reduce(is_first() ? MPI_IN_PLACE : from, is_first() ? from : nullptr, size, MPI_INT64_T, MPI_SUM, 0,
+                   MPI_COMM_WORLD);
+    });
+    if (!is_first()) std::fill(values.begin(), values.end(), 0);
+}
+
+void Ranks::sum_everywhere(std::span<std::int64_t> values) {
+    if (count_ == 1) return;
+    in_chunks(values, [](std::int64_t* from, int size) {
+        MPI_Allreduce(MPI_IN_PLACE, from, size, MPI_INT64_T, MPI_SUM, MPI_COMM_WORLD);
+    });
+}
+
+std::int64_t Ranks::greatest(std::int64_t value) {
+    if (count_ > 1) MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD);
+    return value;
+}
+
+void Ranks::broadcast(std::span<std::byte> bytes) {
+    if (count_ == 1) return;
+    in_chunks(bytes, [](std::byte* from, int size) { MPI_Bcast(from, size, MPI_BYTE, 0, MPI_COMM_WORLD); });
+}
+
+std::vector<std::vector<std::byte>> Ranks::gather(std::span<const std::byte> bytes) {
+    if (count_ == 1) return {{bytes.begin(), bytes.end()}};
+    const int size = static_cast<int>(bytes.size());
+    if (!is_first()) {
+        MPI_Send(bytes.data(), size, MPI_BYTE, 0, kAnswerTag, MPI_COMM_WORLD);
+        return {};
+    }
+    std::vector<std::vector<std::byte>> all{{bytes.begin(), bytes.end()}};
+    for (int rank = 1; rank < count_; ++rank) {
+        MPI_Status status;
+        MPI_Probe(rank, kAnswerTag, MPI_COMM_WORLD, &status);
+        int arriving = 0;
+        MPI_Get_count(&status, MPI_BYTE, &arriving);
+        std::vector<std::byte>& one = all.emplace_back(static_cast<std::size_t>(arriving));
+        MPI_Recv(one.data(), arriving, MPI_BYTE, rank, kAnswerTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    }
+    return all;
+}
+
+}  // namespace raypool::cluster
