@@ -63,8 +63,7 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     try {
-        raypool::cluster::Ranks ranks;
-        return run(argc, argv, ranks);
+        return run(argc, argv, *raypool::cluster::join_ranks());
     } catch (const raypool::InputError& error) {
         fmt::print(stderr, "raypool: {}\n", error.what());
         return 2;

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "cluster/ranks.h"
-#include "core/error.h"
 
 namespace raypool::cluster {
 
@@ -25,11 +24,6 @@ constexpr std::int64_t kNoneLeft = -1;
 
 /// A message's most elements: MPI counts in int, and a reduction holds a second copy of what is under way.
 constexpr std::size_t kChunk = std::size_t{1} << 20;
-
-bool is_launched() {
-    constexpr const char* kMarks[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
-    return std::any_of(std::begin(kMarks), std::end(kMarks), [](const char* name) { return std::getenv(name); });
-}
 
 template <class Element, class Call>
 void in_chunks(std::span<Element> values, Call call) {
@@ -66,13 +60,24 @@ void answer(int others, const Take& take, const Ranks::Work& given) {
     }
 }
 
-}  // namespace
+class MpiRanks : public Ranks {
+  public:
+    MpiRanks();
+    MpiRanks(const MpiRanks&) = delete;
+    MpiRanks& operator=(const MpiRanks&) = delete;
+    ~MpiRanks() override { MPI_Finalize(); }
+    int fail(int status, const std::string& text) const override;
+    void hand_out(std::int64_t count, const Work& work, const Work& given) override;
+    void sum_at_first(std::span<std::int64_t> values) override;
+    void sum_everywhere(std::span<std::int64_t> values) override;
+    [[nodiscard]] std::int64_t greatest(std::int64_t value) override;
+    void broadcast(std::span<std::byte> bytes) override;
+    [[nodiscard]] std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) override;
+};
 
-Ranks::Ranks() {
-    if (!is_launched()) return;
+MpiRanks::MpiRanks() {
     int threads = MPI_THREAD_SINGLE;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &threads);
-    is_begun_ = true;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &count_);
     MPI_Comm machine = MPI_COMM_NULL;
@@ -82,11 +87,7 @@ Ranks::Ranks() {
     if (count_ > 1 && threads < MPI_THREAD_SERIALIZED) std::exit(fail(2, "this MPI was built without threads"));
 }
 
-Ranks::~Ranks() {
-    if (is_begun_) MPI_Finalize();
-}
-
-int Ranks::fail(int status, const std::string& text) const {
+int MpiRanks::fail(int status, const std::string& text) const {
     // What all ranks find wrong, rank 0 says: it ends the job while the others sleep.
     if (!is_first()) std::this_thread::sleep_for(1s);
     fmt::print(stderr, "raypool: {}{}\n", is_first() ? "" : fmt::format("rank {} of {}: ", rank_, count_), text);
@@ -94,7 +95,7 @@ int Ranks::fail(int status, const std::string& text) const {
     return status;
 }
 
-void Ranks::hand_out(std::int64_t count, const Work& work, const Work& given) {
+void MpiRanks::hand_out(std::int64_t count, const Work& work, const Work& given) {
     if (!is_first()) {
         for (;;) {
             std::int64_t unit = 0;
@@ -118,8 +119,7 @@ void Ranks::hand_out(std::int64_t count, const Work& work, const Work& given) {
     }
 }
 
-void Ranks::sum_at_first(std::span<std::int64_t> values) {
-    if (count_ == 1) return;
+void MpiRanks::sum_at_first(std::span<std::int64_t> values) {
     in_chunks(values, [this](std::int64_t* from, int size) {
         MPI_Reduce(is_first() ? MPI_IN_PLACE : from, is_first() ? from : nullptr, size, MPI_INT64_T, MPI_SUM, 0,
                    MPI_COMM_WORLD);
@@ -127,25 +127,22 @@ void Ranks::sum_at_first(std::span<std::int64_t> values) {
     if (!is_first()) std::fill(values.begin(), values.end(), 0);
 }
 
-void Ranks::sum_everywhere(std::span<std::int64_t> values) {
-    if (count_ == 1) return;
+void MpiRanks::sum_everywhere(std::span<std::int64_t> values) {
     in_chunks(values, [](std::int64_t* from, int size) {
         MPI_Allreduce(MPI_IN_PLACE, from, size, MPI_INT64_T, MPI_SUM, MPI_COMM_WORLD);
     });
 }
 
-std::int64_t Ranks::greatest(std::int64_t value) {
-    if (count_ > 1) MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD);
+std::int64_t MpiRanks::greatest(std::int64_t value) {
+    MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD);
     return value;
 }
 
-void Ranks::broadcast(std::span<std::byte> bytes) {
-    if (count_ == 1) return;
+void MpiRanks::broadcast(std::span<std::byte> bytes) {
     in_chunks(bytes, [](std::byte* from, int size) { MPI_Bcast(from, size, MPI_BYTE, 0, MPI_COMM_WORLD); });
 }
 
-std::vector<std::vector<std::byte>> Ranks::gather(std::span<const std::byte> bytes) {
-    if (count_ == 1) return {{bytes.begin(), bytes.end()}};
+std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> bytes) {
     const int size = static_cast<int>(bytes.size());
     if (!is_first()) {
         MPI_Send(bytes.data(), size, MPI_BYTE, 0, kAnswerTag, MPI_COMM_WORLD);
@@ -163,4 +160,10 @@ std::vector<std::vector<std::byte>> Ranks::gather(std::span<const std::byte> byt
     return all;
 }
 
+}  // namespace
+
 }  // namespace raypool::cluster
+
+extern "C" raypool::cluster::Ranks* raypool_make_ranks() {
+    return new raypool::cluster::MpiRanks;
+}
