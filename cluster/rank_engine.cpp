@@ -3,10 +3,8 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <numeric>
-#include <thread>
 
 #include <fmt/format.h>
 
@@ -66,7 +64,8 @@ RenderReport RankEngine::share(const CompiledScene<Scalar>& scene, const RenderS
         }
         const RenderReport part = engine_->render(scene, own, framebuffer);
         report.add(part);
-        if (slowness_ > 1) std::this_thread::sleep_for(std::chrono::duration<double>((slowness_ - 1) * part.seconds));
+        const double idle_until = omp_get_wtime() + (slowness_ - 1) * part.seconds;
+        while (omp_get_wtime() < idle_until) continue;  // a slow processor is busy, and leaves its time to nobody
     };
     ranks_.hand_out(static_cast<std::int64_t>(units.size()), work, [&](std::int64_t i) {
         if (settings.progress != nullptr) settings.progress->paths += units[static_cast<std::size_t>(i)].paths();

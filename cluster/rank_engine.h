@@ -18,7 +18,7 @@ namespace raypool::cluster {
 
 class RankEngine : public Engine {
   public:
-    /// `ranks` outlives it. RAYPOOL_SLOW_RANK=R:F in the environment makes rank R sleep after each unit, so that it is
+    /// `ranks` outlives it. RAYPOOL_SLOW_RANK=R:F in the environment makes rank R spin after each unit, so that it is
     /// F times as slow: for experiments on balance (docs/scaling.md). InputError where that makes no sense.
     RankEngine(std::unique_ptr<Engine> engine, Ranks& ranks);
 

@@ -192,8 +192,10 @@ class RankStudy : public Study {
         summary.pictures.push_back(
             {"ranks", "Efficiency against ranks",
              "Each line is a render of so many samples a pixel, simulated: costs of paths are recorded, the network is "
-             "supposed. What to see: a line falls where an equal share comes near what a rank waits for the others' "
-             "last units, for starting its own and for the reduction, which together hardly depend on the render."});
+             "supposed. What to see: a line falls where an equal share of the work comes near what is lost, which is "
+             "the "
+             "others' last units and the reduction for few ranks, and, for thousands, rank 0's answers, one at a "
+             "time."});
         summary.notes.push_back(fmt::format(
             "Supposed: {:.0f} GB/s and {:.0f} us a message, {:.0f} us until a question is seen, {:.0f} us to answer "
             "it, a "
@@ -209,12 +211,12 @@ class RankStudy : public Study {
         double worst = 1;
         bool is_any = false;
         for (std::size_t i = 0; i < ideal.size(); ++i)
-            if (ideal[i] >= 1) {
+            if (ideal[i] >= 2) {
                 worst = std::min(worst, efficiency[i]);
                 is_any = true;
             }
         Finding finding{"",
-                        "where every rank has a second of work or more, 0.9 of its time is work",
+                        "where every rank has two seconds of work or more, 0.9 of its time is work",
                         "",
                         fmt::format("{:.3f} at least", worst),
                         worst >= kGoodEfficiency ? Verdict::Holds : Verdict::DoesNotHold,
