@@ -31,6 +31,26 @@ void in_chunks(std::span<Element> values, Call call) {
         call(values.data(), static_cast<int>(std::min(kChunk, values.size())));
 }
 
+/// A rank's question for work, on its way. It is asked before the unit at hand is begun, so that nobody waits for the
+/// answer: rank 0's thread may have to wait some milliseconds for a processor, as all of them are at work.
+class Question {
+  public:
+    Question() {
+        MPI_Irecv(&answer_, 1, MPI_INT64_T, 0, kAnswerTag, MPI_COMM_WORLD, &receipt_);
+        MPI_Send(nullptr, 0, MPI_BYTE, 0, kAskTag, MPI_COMM_WORLD);
+    }
+    Question(const Question&) = delete;
+    Question& operator=(const Question&) = delete;
+    std::int64_t answer() {
+        MPI_Wait(&receipt_, MPI_STATUS_IGNORE);
+        return answer_;
+    }
+
+  private:
+    std::int64_t answer_ = 0;
+    MPI_Request receipt_ = MPI_REQUEST_NULL;
+};
+
 /// Answers those who ask for work until each has been told that none is left.
 ///
 /// A thread of rank 0 does this, because rank 0 computes too: MPI moves only when it is called, and a rank would wait
@@ -97,13 +117,12 @@ int MpiRanks::fail(int status, const std::string& text) const {
 
 void MpiRanks::hand_out(std::int64_t count, const Work& work, const Work& given) {
     if (!is_first()) {
-        for (;;) {
-            std::int64_t unit = 0;
-            MPI_Sendrecv(nullptr, 0, MPI_BYTE, 0, kAskTag, &unit, 1, MPI_INT64_T, 0, kAnswerTag, MPI_COMM_WORLD,
-                         MPI_STATUS_IGNORE);
-            if (unit == kNoneLeft) return;
+        for (std::int64_t unit = Question().answer(); unit != kNoneLeft;) {
+            Question next;
             work(unit);
+            unit = next.answer();
         }
+        return;
     }
     std::atomic<std::int64_t> next = 0;
     const auto take = [&] {

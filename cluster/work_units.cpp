@@ -12,7 +12,7 @@ std::vector<WorkUnit> work_units(const SampleRange& samples, std::int64_t places
         units.push_back(unit);
         left -= unit.paths();
     };
-    for (std::int64_t sample = samples.first; left > 0;) {
+    for (std::int64_t sample = samples.first; sample < samples.end;) {
         const std::int64_t whole = std::min(wanted_paths() / places, samples.end - sample);
         if (whole > 0) {
             add({{sample, sample + whole}, 0, places});

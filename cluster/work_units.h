@@ -18,9 +18,9 @@ struct WorkUnit {
     [[nodiscard]] std::int64_t paths() const { return (samples.end - samples.first) * (end_place - first_place); }
 };
 
-/// A unit is this part of a rank's equal share of the paths that are left. So a rank whose speed is a quarter of the
-/// others' has not yet begun what they would have to wait for.
-inline constexpr int kUnitsAShare = 4;
+/// So many units make a rank's equal share of the paths that are left. A rank holds two of them, the one at hand and the
+/// one after it, and at a quarter of the others' speed it shall be done with both before they have done all the rest.
+inline constexpr int kUnitsAShare = 6;
 /// But no less than this many paths, some ten milliseconds of a thread: a unit costs a message, a start of all threads,
 /// and the filling and draining of the pools.
 inline constexpr std::int64_t kLeastUnitPaths = 1 << 14;
