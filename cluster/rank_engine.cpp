@@ -3,6 +3,8 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <numeric>
 
@@ -27,11 +29,40 @@ double asked_slowness(int rank) {
     return rank == slow_rank ? slowness : 1;
 }
 
-/// The pixels of places [begin, end): of the list, or of the image where there is none.
-std::vector<std::uint32_t> pixels_of(const std::vector<std::uint32_t>* list, std::int64_t begin, std::int64_t end) {
+/// Lines in an order of which any stretch lies evenly over the image, since cheap and dear lines lie together: each is
+/// a golden section of the height behind the one before.
+class SpreadLines {
+  public:
+    explicit SpreadLines(std::int64_t height)
+        : height_(height), step_(std::llround(0.618034 * static_cast<double>(height))) {
+        while (std::gcd(step_, height_) != 1) ++step_;
+    }
+    [[nodiscard]] std::int64_t line(std::int64_t i) const { return i * step_ % height_; }
+
+  private:
+    std::int64_t height_;
+    std::int64_t step_;
+};
+
+/// The pixels of places [begin, end), rising: of the list or, where there is none, of the image, in spread lines.
+template <class Scalar>
+std::vector<std::uint32_t> pixels_of(const CompiledScene<Scalar>& scene, const std::vector<std::uint32_t>* list,
+                                     std::int64_t begin, std::int64_t end) {
     if (list != nullptr) return {list->begin() + begin, list->begin() + end};
-    std::vector<std::uint32_t> pixels(static_cast<std::size_t>(end - begin));
-    std::iota(pixels.begin(), pixels.end(), static_cast<std::uint32_t>(begin));
+    const SpreadLines lines(scene.height);
+    std::vector<std::pair<std::int64_t, std::int64_t>> runs;  // of pixels: first, end
+    for (std::int64_t place = begin; place < end;) {
+        const std::int64_t x = place % scene.width;
+        const std::int64_t size = std::min(scene.width - x, end - place);
+        const std::int64_t first = lines.line(place / scene.width) * scene.width + x;
+        runs.emplace_back(first, first + size);
+        place += size;
+    }
+    std::sort(runs.begin(), runs.end());
+    std::vector<std::uint32_t> pixels;
+    pixels.reserve(static_cast<std::size_t>(end - begin));
+    for (const auto& [first, last] : runs)
+        for (std::int64_t pixel = first; pixel < last; ++pixel) pixels.push_back(static_cast<std::uint32_t>(pixel));
     return pixels;
 }
 
@@ -59,7 +90,7 @@ RenderReport RankEngine::share(const CompiledScene<Scalar>& scene, const RenderS
         own.log_rounds = false;  // they would say nothing of the others' rounds
         std::vector<std::uint32_t> pixels;
         if (unit.end_place - unit.first_place < places) {
-            pixels = pixels_of(settings.pixels, unit.first_place, unit.end_place);
+            pixels = pixels_of(scene, settings.pixels, unit.first_place, unit.end_place);
             own.pixels = &pixels;
         }
         const RenderReport part = engine_->render(scene, own, framebuffer);

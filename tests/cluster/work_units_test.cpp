@@ -14,12 +14,14 @@ TEST_P(WorkUnits, hold_every_sample_of_every_place_once) {
     const auto [samples, places, ranks] = GetParam();
     const SampleRange range{7, 7 + samples};
     SampleRange whole{7, 7};
+    SampleRange samples_of_this_part{};
     std::int64_t next_place = 0;
     for (const WorkUnit& unit : work_units(range, places, ranks)) {
         ASSERT_GT(unit.paths(), 0);
         ASSERT_EQ(unit.first_place, next_place);
         ASSERT_EQ(unit.samples.first, whole.end);
-        ASSERT_TRUE(unit.first_place == 0 || unit.samples.end == unit.samples.first + 1);
+        ASSERT_TRUE(unit.first_place == 0 || unit.samples == samples_of_this_part);
+        samples_of_this_part = unit.samples;
         next_place = unit.end_place == places ? 0 : unit.end_place;
         if (next_place == 0) whole.end = unit.samples.end;
     }
