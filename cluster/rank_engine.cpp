@@ -3,10 +3,8 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -28,21 +26,6 @@ double asked_slowness(int rank) {
         throw InputError(fmt::format("RAYPOOL_SLOW_RANK: must be RANK:TIMES, 1 to 1000 times as slow, got {}", text));
     return rank == slow_rank ? slowness : 1;
 }
-
-/// Lines in an order of which any stretch lies evenly over the image, since cheap and dear lines lie together: each is
-/// a golden section of the height behind the one before.
-class SpreadLines {
-  public:
-    explicit SpreadLines(std::int64_t height)
-        : height_(height), step_(std::llround(0.618034 * static_cast<double>(height))) {
-        while (std::gcd(step_, height_) != 1) ++step_;
-    }
-    [[nodiscard]] std::int64_t line(std::int64_t i) const { return i * step_ % height_; }
-
-  private:
-    std::int64_t height_;
-    std::int64_t step_;
-};
 
 /// The pixels of places [begin, end), rising: of the list or, where there is none, of the image, in spread lines.
 template <class Scalar>

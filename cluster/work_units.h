@@ -1,14 +1,31 @@
 /// How a render is cut into what ranks take at a time: large units first and small ones last. Pure.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "core/sums_file.h"
 
 namespace raypool::cluster {
 
-/// Some samples of places [first_place, end_place): of pixels, in an order that the engine knows (rank_engine.cpp).
+/// Lines in an order of which any stretch lies evenly over the image, since cheap and dear lines lie together: each is
+/// a golden section of the height behind the one before.
+class SpreadLines {
+  public:
+    explicit SpreadLines(std::int64_t height)
+        : height_(height), step_(std::llround(0.618034 * static_cast<double>(height))) {
+        while (std::gcd(step_, height_) != 1) ++step_;
+    }
+    [[nodiscard]] std::int64_t line(std::int64_t i) const { return i * step_ % height_; }
+
+  private:
+    std::int64_t height_;
+    std::int64_t step_;
+};
+
+/// Some samples of places [first_place, end_place): of pixels, in the order of a list, or of spread lines.
 struct WorkUnit {
     SampleRange samples;
     std::int64_t first_place;

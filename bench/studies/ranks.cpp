@@ -32,9 +32,11 @@ constexpr int kMostRanks = 10000;
 class UnitCosts {
   public:
     UnitCosts(const PathCosts& costs, const CostModel& model) : pixels_(costs.width * costs.height) {
+        const cluster::SpreadLines lines(costs.height);
         for (std::int64_t sample = 0; sample < costs.samples; ++sample) {
             std::vector<double>& sums = until_.emplace_back(1);
-            for (std::int64_t pixel = 0; pixel < pixels_; ++pixel) {
+            for (std::int64_t place = 0; place < pixels_; ++place) {
+                const std::int64_t pixel = lines.line(place / costs.width) * costs.width + place % costs.width;
                 const std::int64_t path = pixel * costs.samples + sample;
                 sums.push_back(sums.back() + model.seconds(costs.tally(path, path + 1)));
             }
