@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <stop_token>
 #include <thread>
 
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ class Question {
     MPI_Request receipt_ = MPI_REQUEST_NULL;
 };
 
-/// Answers those who ask for work until each has been told that none is left.
+/// Answers those who ask for work until each has been told that none is left, or until it is stopped.
 ///
 /// A thread of rank 0 does this, because rank 0 computes too: MPI moves only when it is called, and a rank would wait
 /// for an answer as long as rank 0 is busy with a unit. A counter in rank 0's memory (MPI_Fetch_and_op) needs no thread
@@ -60,8 +61,8 @@ class Question {
 /// so MPI_THREAD_SERIALIZED will do. The thread looks, rather than wait in MPI, which would spin on a processor: often
 /// while questions come, seldom when all are at work.
 template <class Take>
-void answer(int others, const Take& take, const Ranks::Work& given) {
-    for (Clock::time_point asked = Clock::now(); others > 0;) {
+void answer(int others, const Take& take, const Ranks::Work& given, const std::stop_token& stop) {
+    for (Clock::time_point asked = Clock::now(); others > 0 && !stop.stop_requested();) {
         int is_asked = 0;
         MPI_Status status;
         MPI_Iprobe(MPI_ANY_SOURCE, kAskTag, MPI_COMM_WORLD, &is_asked, &status);
@@ -129,11 +130,12 @@ void MpiRanks::hand_out(std::int64_t count, const Work& work, const Work& given)
         const std::int64_t unit = next++;
         return unit < count ? unit : kNoneLeft;
     };
-    const std::jthread clerk([&] { answer(count_ - 1, take, given); });  // joins when all have ended
+    std::jthread clerk([&](const std::stop_token& stop) { answer(count_ - 1, take, given, stop); });
     try {
         for (std::int64_t unit = take(); unit != kNoneLeft; unit = take()) work(unit);
+        clerk.join();  // when all have ended
     } catch (...) {
-        next = count;
+        clerk.request_stop();  // the job ends: who asks now gets no answer
         throw;
     }
 }
