@@ -4,6 +4,7 @@
 #include <chrono>
 #include <string>
 
+#include "cluster/ranks.h"
 #include "core/sums_file.h"
 
 namespace raypool::cli {
@@ -22,26 +23,30 @@ void check(const CheckpointOptions& options);
 RenderSums load_checkpoint(const CheckpointOptions& options, const RenderSums& wanted, const SampleRange& samples);
 
 /// Keeps the checkpoint of one render. With a file, SIGINT and SIGTERM ask it to stop while it lives; a second signal
-/// ends the program at once, with the last checkpoint whole.
+/// ends the program at once, with the last checkpoint whole. Of several ranks, all have one and call it alike:
+/// whichever is asked to stop, all do, and the sums go to rank 0, which writes the file.
 class Checkpoint {
   public:
-    explicit Checkpoint(const CheckpointOptions& options);
+    Checkpoint(const CheckpointOptions& options, cluster::Ranks& ranks);
     Checkpoint(const Checkpoint&) = delete;
     Checkpoint& operator=(const Checkpoint&) = delete;
     ~Checkpoint();
 
     [[nodiscard]] bool is_kept() const { return !options_.file.empty(); }
     /// To be asked between pieces of the render: writes the file if it is time to. False when the render shall stop.
-    bool keep(const RenderSums& sums);
-    /// Writes the file now.
-    void write(const RenderSums& sums);
+    bool keep(RenderSums& sums);
+    /// Gathers the sums, with a file or without, and writes it now.
+    void write(RenderSums& sums);
 
     /// The signal that asked to stop; 0 when none did.
     [[nodiscard]] int stopped_by() const;
 
   private:
+    void prepare_last_words(const RenderSums& sums);
+
     using Clock = std::chrono::steady_clock;
     const CheckpointOptions& options_;
+    cluster::Ranks& ranks_;
     Clock::time_point written_ = Clock::now();
 };
 

@@ -5,9 +5,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cluster/ranks.h"
+
 namespace raypool::cli {
 
-void add_render_command(CLI::App& app, int& status);
+/// The only one that several ranks can run together.
+void add_render_command(CLI::App& app, cluster::Ranks& ranks, int& status);
 void add_compare_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app, int& status);
 void add_diff_command(CLI::App& app, int& status);

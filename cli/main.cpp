@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <string>
@@ -10,29 +11,27 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
+#include "cluster/ranks.h"
 #include "core/error.h"
 
 namespace {
 
-int fail(int status, std::string text) {
+std::string one_line(std::string text) {
     for (char& c : text)
         if (static_cast<unsigned char>(c) < ' ' || c == 0x7F) c = ' ';  // one line, and nothing for a terminal to obey
-    fmt::print(stderr, "raypool: {}\n", text);
-    return status;
+    return text;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-    // Writing past a limit or into a closed pipe shall be an error that can be reported, not a signal that kills.
-    std::signal(SIGXFSZ, SIG_IGN);
-    std::signal(SIGPIPE, SIG_IGN);
+int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
+    const auto fail = [&](int status, const std::string& text) { return ranks.fail(status, one_line(text)); };
     try {
+        if (ranks.count() > 1 && (argc < 2 || std::strcmp(argv[1], "render") != 0))
+            return fail(2, "several ranks can only run the command render");
         CLI::App app("Ray pools against recursion on a CPU: one image, two orders of work, measured.", "raypool");
         app.require_subcommand(0, 1);  // a wrong command is then named as an argument that was not expected
         app.set_version_flag("--version", RAYPOOL_VERSION);
         int status = 0;
-        raypool::cli::add_render_command(app, status);
+        raypool::cli::add_render_command(app, ranks, status);
         raypool::cli::add_compare_command(app, status);
         raypool::cli::add_info_command(app, status);
         raypool::cli::add_diff_command(app, status);
@@ -54,5 +53,19 @@ int main(int argc, char** argv) {
         return fail(1, "out of memory");
     } catch (const std::exception& error) {
         return fail(1, error.what());
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    // Writing past a limit or into a closed pipe shall be an error that can be reported, not a signal that kills.
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
+    try {
+        return run(argc, argv, *raypool::cluster::join_ranks());
+    } catch (const raypool::InputError& error) {
+        fmt::print(stderr, "raypool: {}\n", error.what());
+        return 2;
     }
 }

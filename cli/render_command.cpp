@@ -1,9 +1,9 @@
 #include <unistd.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,6 +13,7 @@
 #include "cli/options.h"
 #include "cli/pool_options.h"
 #include "cli/render_image.h"
+#include "cli/render_summary.h"
 #include "cli/stats_json.h"
 #include "cli/stopwatch.h"
 #include "core/cost_image.h"
@@ -81,12 +82,12 @@ RenderSettings render_settings(const RenderOptions& options) {
 }
 
 /// Sums, the image made of them and, where asked for, second moments with their estimates and the checkpoint's bytes
-/// must fit into the machine, before anything is touched.
-void check_memory(const Scene& scene, const RenderOptions& options) {
+/// must fit into the machine, before anything is touched. Each rank on it has its own.
+void check_memory(const Scene& scene, const RenderOptions& options, const cluster::Ranks& ranks) {
     double pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
     if (options.target_error > 0) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
     if (!options.checkpoint.file.empty()) pixel_bytes += 4 * sizeof(std::int64_t) + sizeof(std::int32_t);
-    const double bytes = static_cast<double>(scene.width * scene.height) * pixel_bytes;
+    const double bytes = static_cast<double>(scene.width * scene.height) * pixel_bytes * ranks.on_this_machine();
     const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (bytes > machine)
         throw InputError(
@@ -117,63 +118,20 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
     write_image(options.cost_image, is_picture ? heat_map(cost) : cost.image(), attributes);
 }
 
-/// What was traced just now, which is nothing where a checkpoint was complete.
-void print_work(const RenderSettings& settings, const RenderReport& report) {
-    const auto paths = static_cast<double>(report.paths());
-    const auto segments = static_cast<double>(report.segments());
-    if (paths == 0) {
-        fmt::print("no sample was missing\n");
-        return;
-    }
-    fmt::print("{:.3f} M paths, {:.3f} M segments ({:.3f} a path) in {:.3f} s: {:.3f} M paths/s, {:.1f} ns a segment\n",
-               paths * 1e-6, segments * 1e-6, segments / paths, report.seconds, paths / report.seconds * 1e-6,
-               segments == 0 ? 0 : report.seconds * 1e9 * settings.threads / segments);
-    if (settings.count_work)
-        fmt::print("{:.2f} box tests and {:.2f} primitive tests a segment\n",
-                   static_cast<double>(report.total(&ThreadWork::box_tests)) / segments,
-                   static_cast<double>(report.total(&ThreadWork::primitive_tests)) / segments);
+/// What only one rank can do is for rank 0; what is not gathered from ranks is refused.
+void make_ready(RenderOptions& options, const cluster::Ranks& ranks) {
+    if (ranks.count() > 1)
+        for (const auto& [flag, file] : {std::pair{"--trace", options.trace}, {"--cost-image", options.cost_image}})
+            if (!file.empty()) throw InputError(fmt::format("{}: is not made by several ranks", flag));
+    if (ranks.is_first()) return check(options.checkpoint);
+    options.output.clear();
+    options.stats.clear();
+    options.is_quiet = true;
 }
 
-void print_summary(const RenderRecord& record) {
-    const RenderSettings& settings = record.settings;
-    const RenderReport& report = record.report;
-    fmt::print("{}: {} x {}, samples {} to {} of {}, depth {}{}, {}seed {}, {}\n", record.scene_name, record.width,
-               record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth,
-               settings.roulette ? " and roulette" : "", settings.sampler == Sampler::Sobol ? "sobol, " : "",
-               settings.seed, record.precision == Precision::Float ? "float" : "double");
-    fmt::print("{} engine: {} thread{}, grain {}, schedule {}\n", record.engine, settings.threads,
-               settings.threads == 1 ? "" : "s", to_string(settings.grain), to_string(settings.schedule));
-    print_work(settings, report);
-    if (record.target_error > 0) {
-        const auto [least, most] =
-            std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
-        fmt::print(
-            "estimated RMSE {:.4g} (asked for {:.4g}) after {} rounds; {} to {} samples a pixel, {:.1f} on average\n",
-            record.adaptive.rmse, record.target_error, record.adaptive.rounds, *least, *most,
-            record.adaptive.mean_samples());
-    }
-    if (report.pool_bytes > 0)
-        fmt::print("ray record of {} bytes; pools at most {:.2f} MB\n", report.record_bytes,
-                   static_cast<double>(report.pool_bytes) / (1024 * 1024));
-    if (record.truncation_bound > 0)
-        fmt::print("depth {} cuts off a radiance of at most {:.3g} a pixel\n", settings.depth, record.truncation_bound);
-    if (report.audit.non_finite > 0 || report.audit.clamped > 0)
-        fmt::print("bad samples: {} not finite and left out, {} channels cut (radiance {:.6g} in all)\n",
-                   report.audit.non_finite, report.audit.clamped, report.audit.clamped_energy);
-    fmt::print("hash {}\n", record.hash);
-}
-
-void print_trace(const std::string& file, const Trace& trace) {
-    fmt::print("{}: {} events", file, trace.event_count());
-    if (trace.dropped_count() > 0)
-        fmt::print(", and {} that are left out: the trace ends early, with {} events of a thread",
-                   trace.dropped_count(), Trace::kMostEvents);
-    fmt::print("\n");
-}
-
-int render(const RenderOptions& options) {
+int render(RenderOptions& options, cluster::Ranks& ranks) {
     const Stopwatch total;
-    check(options.checkpoint);
+    make_ready(options, ranks);
     RenderRecord record;
     record.settings = render_settings(options);
     record.spp = options.spp;
@@ -201,7 +159,7 @@ int render(const RenderOptions& options) {
     Stopwatch watch;
     Scene scene = load_scene(options.scene);
     if (options.width != 0) set_width(scene, options.width);
-    check_memory(scene, options);
+    check_memory(scene, options, ranks);
     CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;
     record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.precision));
@@ -210,8 +168,8 @@ int render(const RenderOptions& options) {
     record.height = scene.height;
     record.read_s = watch.seconds();
 
-    Checkpoint checkpoint(options.checkpoint);
-    const Image image = render_image(scene, options.checkpoint, options.is_quiet, checkpoint, record);
+    Checkpoint checkpoint(options.checkpoint, ranks);
+    const Image image = render_image(scene, options.checkpoint, options.is_quiet, checkpoint, ranks, record);
     watch.lap();
     if (!options.output.empty()) write_image(options.output, image, image_attributes(record));
     record.write_s = watch.seconds();
@@ -221,7 +179,7 @@ int render(const RenderOptions& options) {
     if (!options.trace.empty()) write_trace(options.trace, trace, image_attributes(record));
 
     const int signal = checkpoint.stopped_by();
-    if (signal != 0)
+    if (signal != 0 && ranks.is_first())
         fmt::print(stderr,
                    "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
                    options.checkpoint.file, record.samples_done);
@@ -236,7 +194,7 @@ int render(const RenderOptions& options) {
 
 }  // namespace
 
-void add_render_command(CLI::App& app, int& status) {
+void add_render_command(CLI::App& app, cluster::Ranks& ranks, int& status) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a scene, print its figures and the hash of its sums");
     command->add_option("scene", options->scene, "Scene file, or the name of a built-in scene (default: paper)");
@@ -294,7 +252,7 @@ void add_render_command(CLI::App& app, int& status) {
     command->add_option("--cost", options->cost, "What is cost there: segments, tests or ns (default: tests)")
         ->check(CLI::IsMember({"segments", "tests", "ns"}));
     command->add_flag("--quiet", options->is_quiet, "Print nothing");
-    command->callback([options, &status] { status = render(*options); });
+    command->callback([options, &ranks, &status] { status = render(*options, ranks); });
 }
 
 }  // namespace raypool::cli

@@ -8,6 +8,8 @@
 
 #include "cli/progress_bar.h"
 #include "cli/stopwatch.h"
+#include "cluster/exchange.h"
+#include "cluster/rank_engine.h"
 #include "core/progressive.h"
 #include "core/scene_hash.h"
 #include "recursive/engine.h"
@@ -17,10 +19,15 @@ namespace raypool::cli {
 
 namespace {
 
-std::unique_ptr<Engine> make_engine(const std::string& name, const wavefront::PoolSettings& pool) {
+std::unique_ptr<Engine> make_own_engine(const std::string& name, const wavefront::PoolSettings& pool) {
     if (name == "wavefront") return std::make_unique<wavefront::WavefrontEngine>(pool);
     if (name == "iterative") return std::make_unique<recursive::IterativeEngine>();
     return std::make_unique<recursive::RecursiveEngine>();
+}
+
+std::unique_ptr<Engine> make_engine(const RenderRecord& record, cluster::Ranks& ranks) {
+    std::unique_ptr<Engine> own = make_own_engine(record.engine, record.pool);
+    return ranks.count() == 1 ? std::move(own) : std::make_unique<cluster::RankEngine>(std::move(own), ranks);
 }
 
 /// All that fixes the image. Threads, engine and pool do not.
@@ -41,9 +48,8 @@ ImageKey image_key(const Scene& scene, const RenderRecord& record) {
 
 /// Renders what `sums` lacks, and keeps checkpoints.
 template <class Scalar>
-RenderReport render_missing(const CompiledScene<Scalar>& scene, const RenderRecord& record, RenderSums& sums,
-                            AdaptiveReport& adaptive, Checkpoint& checkpoint) {
-    const std::unique_ptr<Engine> engine = make_engine(record.engine, record.pool);
+RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& scene, const RenderRecord& record,
+                            RenderSums& sums, AdaptiveReport& adaptive, Checkpoint& checkpoint) {
     if (record.target_error > 0) {
         std::vector<std::int32_t> counts = sums.sample_counts;
         if (counts.empty()) counts.resize(static_cast<std::size_t>(scene.pixel_count()));
@@ -53,7 +59,7 @@ RenderReport render_missing(const CompiledScene<Scalar>& scene, const RenderReco
             sums.rounds = plan.rounds();
             return checkpoint.keep(sums);
         };
-        RenderReport report = render_adaptively(*engine, scene, record.settings, plan, sums.framebuffer, keep);
+        RenderReport report = render_adaptively(engine, scene, record.settings, plan, sums.framebuffer, keep);
         adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds()};
         return report;
     }
@@ -65,11 +71,11 @@ RenderReport render_missing(const CompiledScene<Scalar>& scene, const RenderReco
         settings.end_sample = gap.end;
         if (settings.first_sample >= settings.end_sample) continue;
         if (!checkpoint.is_kept()) {
-            report.add(engine->render(scene, settings, sums.framebuffer));
+            report.add(engine.render(scene, settings, sums.framebuffer));
             sums.ranges = with_range(std::move(sums.ranges), {settings.first_sample, settings.end_sample});
             continue;
         }
-        report.add(render_in_pieces(*engine, scene, settings, sums.framebuffer, [&](const SampleRange& range) {
+        report.add(render_in_pieces(engine, scene, settings, sums.framebuffer, [&](const SampleRange& range) {
             sums.ranges = with_range(std::move(sums.ranges), range);
             return checkpoint.keep(sums);
         }));
@@ -80,7 +86,7 @@ RenderReport render_missing(const CompiledScene<Scalar>& scene, const RenderReco
 
 template <class Scalar>
 Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_quiet, Checkpoint& checkpoint,
-                RenderRecord& record) {
+                cluster::Ranks& ranks, RenderRecord& record) {
     Stopwatch watch;
     const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
     record.needs = compiled.needs;
@@ -94,14 +100,22 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
                     0,
                     Framebuffer(compiled.width, compiled.height, FixedPoint::make(record.spp, compiled.max_radiance),
                                 is_adaptive ? Moments::Second : Moments::First)};
-    if (options.is_resumed)
-        sums = load_checkpoint(options, sums, {record.settings.first_sample, record.settings.end_sample});
+    if (options.is_resumed) {
+        if (ranks.is_first())
+            sums = load_checkpoint(options, sums, {record.settings.first_sample, record.settings.end_sample});
+        cluster::broadcast(ranks, sums);
+    }
     Progress progress;
     record.settings.progress = &progress;
     progress.paths = compiled.pixel_count() * sums.sample_count();
     {
         const ProgressBar bar(progress, path_count(compiled, record.settings), {"M paths/s", 1e-6}, is_quiet);
-        record.report = render_missing(compiled, record, sums, record.adaptive, checkpoint);
+        const std::unique_ptr<Engine> engine = make_engine(record, ranks);
+        record.report = render_missing(*engine, compiled, record, sums, record.adaptive, checkpoint);
+    }
+    if (ranks.count() > 1) {
+        record.ranks = cluster::gather(ranks, record.report);
+        record.report = cluster::joined(record.ranks);
     }
     checkpoint.write(sums);
     record.settings.progress = nullptr;
@@ -114,9 +128,10 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
 }  // namespace
 
 Image render_image(const Scene& scene, const CheckpointOptions& options, bool is_quiet, Checkpoint& checkpoint,
-                   RenderRecord& record) {
-    return record.precision == Precision::Double ? render_in<double>(scene, options, is_quiet, checkpoint, record)
-                                                 : render_in<float>(scene, options, is_quiet, checkpoint, record);
+                   cluster::Ranks& ranks, RenderRecord& record) {
+    return record.precision == Precision::Double
+               ? render_in<double>(scene, options, is_quiet, checkpoint, ranks, record)
+               : render_in<float>(scene, options, is_quiet, checkpoint, ranks, record);
 }
 
 }  // namespace raypool::cli

@@ -3,14 +3,16 @@
 
 #include "cli/checkpoint.h"
 #include "cli/stats_json.h"
+#include "cluster/ranks.h"
 #include "core/image.h"
 #include "core/scene.h"
 
 namespace raypool::cli {
 
 /// Renders what the checkpoint of `options`, if one is resumed, lacks. Reads the settings in `record`, and fills in
-/// what was made. Where the checkpoint was asked to stop, the image is of the samples so far.
+/// what was made. Where the checkpoint was asked to stop, the image is of the samples so far. Of several ranks, all
+/// call it, and rank 0 gets the image; what others get means nothing.
 Image render_image(const Scene& scene, const CheckpointOptions& options, bool is_quiet, Checkpoint& checkpoint,
-                   RenderRecord& record);
+                   cluster::Ranks& ranks, RenderRecord& record);
 
 }  // namespace raypool::cli

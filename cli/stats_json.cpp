@@ -91,6 +91,14 @@ json stats_json(const RenderRecord& record) {
             {"rounds", record.adaptive.rounds},
             {"samples_per_pixel", {{"least", *least}, {"mean", record.adaptive.mean_samples()}, {"most", *most}}}};
     }
+    for (const RenderReport& rank : record.ranks) {
+        double busy_s = 0;
+        for (const ThreadWork& thread : rank.threads) busy_s += thread.busy_s;
+        stats["ranks"].push_back({{"threads", rank.threads.size()},
+                                  {"paths", rank.paths()},
+                                  {"segments", rank.segments()},
+                                  {"busy_s", busy_s}});
+    }
     if (record.engine == "wavefront") {
         stats["record_bytes"] = report.record_bytes;
         stats["pool_bytes"] = report.pool_bytes;

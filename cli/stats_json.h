@@ -23,9 +23,10 @@ struct RenderRecord {
     Precision precision = Precision::Float;
     std::string engine;
     RenderSettings settings;
-    wavefront::PoolSettings pool;  ///< of the wavefront engine
-    RenderReport report;
-    double target_error = 0;  ///< 0: every pixel has the same number of samples
+    wavefront::PoolSettings pool;     ///< of the wavefront engine
+    RenderReport report;              ///< of all ranks
+    std::vector<RenderReport> ranks;  ///< of each, where there are several
+    double target_error = 0;          ///< 0: every pixel has the same number of samples
     AdaptiveReport adaptive;
     double truncation_bound = 0;  ///< CompiledScene::truncation_bound() at the depth of the settings
     std::string hash;

@@ -14,6 +14,7 @@ std::vector<std::unique_ptr<Study>> all_studies() {
     studies.push_back(replay_study());
     studies.push_back(schedules_study());
     studies.push_back(scaling_study());
+    studies.push_back(ranks_study());
     studies.push_back(pool_study());
     studies.push_back(framebuffer_study());
     studies.push_back(ladder_study());

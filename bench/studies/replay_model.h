@@ -31,6 +31,7 @@ struct ReplaySchedule {
 struct ReplayCosts {
     double fetch = 0;    ///< of a chunk, to the thread that fetches it; static schedules fetch none
     double barrier = 0;  ///< of the end of a round
+    double serve = 0;    ///< of a chunk, to the one who hands them out: those who ask meanwhile wait
 };
 
 struct Replayed {

@@ -15,6 +15,7 @@ std::unique_ptr<Study> needs_study();
 std::unique_ptr<Study> pool_study();
 std::unique_ptr<Study> schedules_study();
 std::unique_ptr<Study> load_study();
+std::unique_ptr<Study> ranks_study();
 std::unique_ptr<Study> replay_study();
 std::unique_ptr<Study> scaling_study();
 std::unique_ptr<Study> speed_accuracy_study();

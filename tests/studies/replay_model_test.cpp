@@ -142,6 +142,8 @@ TEST(Replay, ChargesAFetchForEachChunkToWhoFetchesIt) {
     EXPECT_EQ(replay(items, {Kind::Dynamic, 3}, 1, {.fetch = 0.5}).makespan, 12 + 4 * 0.5);
     EXPECT_EQ(replay(items, {Kind::Dynamic, 3}, 2, {.fetch = 0.5}).makespan, 6 + 2 * 0.5);
     EXPECT_EQ(replay(items, {Kind::Static, 3}, 2, {.fetch = 0.5}).makespan, 6);
+    // The second thread's first chunk waits for the first one's to be handed out; later they do not meet.
+    EXPECT_EQ(replay(items, {Kind::Dynamic, 3}, 2, {.serve = 0.5}).makespan, 6 + 3 * 0.5);
     EXPECT_EQ(replay(items, {Kind::Dynamic, 3}, 2, {.fetch = 0.5}).total(), 12);
 }
 

@@ -1,0 +1,240 @@
+// A render on up to 10,000 ranks, simulated from recorded costs: where efficiency falls, and why.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "bench/studies/path_costs.h"
+#include "bench/studies/renders.h"
+#include "bench/studies/statistics.h"
+#include "bench/studies/studies.h"
+#include "cluster/work_units.h"
+
+namespace raypool::studies {
+
+namespace {
+
+/// A cluster's network of the kind that costs little: 100 Gbit/s, of which a reduction sees the most part.
+constexpr double kBytesPerSecond = 10e9;
+constexpr double kLatency = 5e-6;      ///< of a message, s
+constexpr double kLook = 50e-6;        ///< until rank 0 sees a question, s (cluster/ranks_mpi.cpp sleeps between looks)
+constexpr double kServe = 2e-6;        ///< of a question, to the thread that answers, s
+constexpr double kPixelBytes = 3 * 8;  ///< of a reduction
+constexpr double kSlowSpeed = 0.25;    ///< of one rank, where one is slow
+constexpr double kGoodEfficiency = 0.9;
+constexpr int kMostRanks = 10000;
+
+/// Seconds of any unit: the recorded samples again and again.
+class UnitCosts {
+  public:
+    UnitCosts(const PathCosts& costs, const CostModel& model) : pixels_(costs.width * costs.height) {
+        const cluster::SpreadLines lines(costs.height);
+        for (std::int64_t sample = 0; sample < costs.samples; ++sample) {
+            std::vector<double>& sums = until_.emplace_back(1);
+            for (std::int64_t place = 0; place < pixels_; ++place) {
+                const std::int64_t pixel = lines.line(place / costs.width) * costs.width + place % costs.width;
+                const std::int64_t path = pixel * costs.samples + sample;
+                sums.push_back(sums.back() + model.seconds(costs.tally(path, path + 1)));
+            }
+        }
+    }
+    [[nodiscard]] std::int64_t pixels() const { return pixels_; }
+    [[nodiscard]] double seconds(const cluster::WorkUnit& unit) const {
+        const auto recorded = static_cast<std::int64_t>(until_.size());
+        const std::int64_t count = unit.samples.end - unit.samples.first;
+        double all = 0;
+        double odd = 0;
+        for (std::int64_t i = 0; i < recorded; ++i) {
+            const std::vector<double>& sums = until_[static_cast<std::size_t>((unit.samples.first + i) % recorded)];
+            const double once =
+                sums[static_cast<std::size_t>(unit.end_place)] - sums[static_cast<std::size_t>(unit.first_place)];
+            all += once;
+            if (i < count % recorded) odd += once;
+        }
+        return static_cast<double>(count / recorded) * all + odd;
+    }
+
+  private:
+    std::int64_t pixels_;
+    std::vector<std::vector<double>> until_;  ///< by recorded sample and place: of the places before
+};
+
+/// What all cases share, made by the first of them.
+class Recording {
+  public:
+    Recording(std::shared_ptr<const StudyScene> scene, const RenderSettings& settings, int repeats)
+        : scene_(std::move(scene)), settings_(settings), repeats_(repeats) {}
+
+    const UnitCosts& costs() {
+        if (costs_ == nullptr) {
+            const PathCosts paths = record_costs(*scene_, settings_);
+            costs_ = std::make_unique<UnitCosts>(paths, fit_costs(*scene_, settings_, paths, repeats_).model);
+        }
+        return *costs_;
+    }
+    /// Of a unit without work, measured: one pixel, for which a thread looks through the image.
+    double unit_start() {
+        if (unit_start_ > 0) return unit_start_;
+        const std::vector<std::uint32_t> one_pixel{0};
+        RenderSettings settings = settings_;
+        settings.pixels = &one_pixel;
+        settings.threads = 1;
+        std::vector<double> seconds;
+        for (int i = 0; i < 9; ++i)
+            seconds.push_back(measure(*recursive_engine().engine, *scene_, settings).report.seconds);
+        return unit_start_ = *std::min_element(seconds.begin(), seconds.end());
+    }
+
+  private:
+    std::shared_ptr<const StudyScene> scene_;
+    RenderSettings settings_;
+    int repeats_;
+    std::unique_ptr<const UnitCosts> costs_;
+    double unit_start_ = 0;
+};
+
+Row simulate(Recording& recording, std::int64_t spp, int ranks) {
+    const UnitCosts& costs = recording.costs();
+    std::vector<double> items;
+    for (const cluster::WorkUnit& unit : cluster::work_units({0, spp}, costs.pixels(), ranks))
+        items.push_back(costs.seconds(unit));
+    const double work = std::accumulate(items.begin(), items.end(), 0.0);
+
+    const ReplaySchedule in_order{ReplaySchedule::Kind::Dynamic, 1};
+    const ReplayCosts all{.fetch = 2 * kLatency + kLook + recording.unit_start(), .serve = kServe};
+    const double balanced = replay(items, in_order, ranks).makespan;
+    const double shared = replay(items, in_order, ranks, ranks == 1 ? ReplayCosts{} : all).makespan;
+    const int levels = static_cast<int>(std::bit_width(static_cast<unsigned>(ranks - 1)));  // ceil(log2(ranks))
+    const double reduced = levels * (kLatency + static_cast<double>(costs.pixels()) * kPixelBytes / kBytesPerSecond);
+    std::vector<double> speeds{kSlowSpeed};
+    speeds.resize(static_cast<std::size_t>(ranks), 1.0);
+    const double slow = replay(items, in_order, ranks, ranks == 1 ? ReplayCosts{} : all, speeds).makespan + reduced;
+    const double ideal = work / ranks;
+    return {spp,
+            ranks,
+            static_cast<std::int64_t>(items.size()),
+            ideal,
+            balanced - ideal,
+            shared - balanced,
+            reduced,
+            ideal / (shared + reduced),
+            work / (ranks - 1 + kSlowSpeed) / slow};
+}
+
+class RankStudy : public Study {
+  public:
+    [[nodiscard]] std::string name() const override { return "ranks"; }
+    [[nodiscard]] std::string question() const override {
+        return "How far do MPI ranks scale, simulated to 10,000 from recorded costs, and what stops them?";
+    }
+    [[nodiscard]] std::vector<Column> columns() const override {
+        return {
+            {"spp", ColumnType::Count, "samples per pixel of the render that is simulated"},
+            {"ranks", ColumnType::Count, "ranks of one thread, of one speed"},
+            {"units", ColumnType::Count, "of work that are handed out"},
+            {"ideal_s", ColumnType::Real, "an equal share of the work, s"},
+            {"last_units_s", ColumnType::Real, "lost because some have nothing while others end their last unit, s"},
+            {"questions_s", ColumnType::Real, "lost to asking for units and starting them, s"},
+            {"reduction_s", ColumnType::Real, "of the sums, s"},
+            {"efficiency", ColumnType::Real, "ideal over all of it"},
+            {"slow_efficiency", ColumnType::Real, "the same, with one rank at a quarter of the speed"}};
+    }
+
+    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
+        const auto scene = study_scene(options.scene, choose(options.width, options.is_quick, 160, 800));
+        RenderSettings settings;
+        settings.end_sample = choose(options.spp, options.is_quick, 2, 4);
+        settings.depth = static_cast<std::int32_t>(choose(options.depth, options.is_quick, 50, 50));
+        settings.seed = options.seed;
+        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 1, 5));
+        const auto recording = std::make_shared<Recording>(scene, settings, repeats);
+
+        std::vector<Case> cases;
+        for (const std::int64_t spp : {100, 1000, 10000, 100000})
+            for (int power = 1; power <= kMostRanks; power *= 10)
+                for (const int ranks : {power, 2 * power, 5 * power})
+                    if (ranks <= kMostRanks)
+                        cases.push_back({fmt::format("{} spp, {} ranks", spp, ranks), "", 1,
+                                         [=] { return std::vector<Row>{simulate(*recording, spp, ranks)}; }});
+        return cases;
+    }
+
+    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions& /*options*/) const override {
+        Summary summary;
+        TextTable falls{
+            "How far each render scales", {"samples a pixel", "most ranks at 0.9", "work of each there"}, {}};
+        TextTable losses{fmt::format("What a render on {} ranks spends, in milliseconds", kMostRanks),
+                         {"samples a pixel", "equal share", "last units", "questions", "reduction", "efficiency",
+                          "with one slow rank"},
+                         {}};
+        for (const Value& spp : data.distinct("spp")) {
+            const Table rows = data.where("spp", spp);
+            const std::vector<double> ranks = rows.numbers("ranks"), ideal = rows.numbers("ideal_s"),
+                                      efficiency = rows.numbers("efficiency");
+            const std::size_t first_bad = static_cast<std::size_t>(
+                std::find_if(efficiency.begin(), efficiency.end(), [](double e) { return e < kGoodEfficiency; }) -
+                efficiency.begin());
+            if (first_bad > 0)
+                falls.rows.push_back({spp.dump(), fmt::format("{}", ranks[first_bad - 1]),
+                                      fmt::format("{:.3g} s", ideal[first_bad - 1])});
+            const Table last = rows.where("ranks", kMostRanks);
+            std::vector<std::string> row{spp.dump()};
+            for (const char* part : {"ideal_s", "last_units_s", "questions_s", "reduction_s"})
+                row.push_back(fmt::format("{:.1f}", 1e3 * last.numbers(part).front()));
+            for (const char* part : {"efficiency", "slow_efficiency"})
+                row.push_back(fmt::format("{:.3f}", last.numbers(part).front()));
+            losses.rows.push_back(std::move(row));
+        }
+        summary.tables = {falls, losses};
+        summary.findings.push_back(scaling_finding(data));
+        summary.pictures.push_back(
+            {"ranks", "Efficiency against ranks",
+             "Each line is a render of so many samples a pixel, simulated: costs of paths are recorded, the network is "
+             "supposed. What to see: a line falls where an equal share of the work comes near what is lost, which is "
+             "the "
+             "others' last units and the reduction for few ranks, and, for thousands, rank 0's answers, one at a "
+             "time."});
+        summary.notes.push_back(fmt::format(
+            "Supposed: {:.0f} GB/s and {:.0f} us a message, {:.0f} us until a question is seen, {:.0f} us to answer "
+            "it, a "
+            "reduction of {} bytes a pixel over a binary tree, one step after the other. Left out: reading the scene, "
+            "starting the ranks, and everything that makes equal processors unequal.",
+            kBytesPerSecond * 1e-9, kLatency * 1e6, kLook * 1e6, kServe * 1e6, kPixelBytes));
+        return summary;
+    }
+
+  private:
+    static Finding scaling_finding(const Table& data) {
+        const std::vector<double> ideal = data.numbers("ideal_s"), efficiency = data.numbers("efficiency");
+        double worst = 1;
+        bool is_any = false;
+        for (std::size_t i = 0; i < ideal.size(); ++i)
+            if (ideal[i] >= 2) {
+                worst = std::min(worst, efficiency[i]);
+                is_any = true;
+            }
+        Finding finding{"",
+                        "where every rank has two seconds of work or more, 0.9 of its time is work",
+                        "",
+                        fmt::format("{:.3f} at least", worst),
+                        worst >= kGoodEfficiency ? Verdict::Holds : Verdict::DoesNotHold,
+                        ""};
+        if (!is_any) {
+            finding.verdict = Verdict::CannotTell;
+            finding.why = "no render was large enough";
+        }
+        return finding;
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<Study> ranks_study() {
+    return std::make_unique<RankStudy>();
+}
+
+}  // namespace raypool::studies

@@ -1,0 +1,33 @@
+/// What ranks tell each other of a render: sums, what a checkpoint holds, and what each of them did. All of it is
+/// collective but clear().
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cluster/ranks.h"
+#include "core/engine.h"
+#include "core/sums_file.h"
+
+namespace raypool::cluster {
+
+/// Rank 0's framebuffer becomes the sum of all, and what others hold in theirs zero: who adds more adds it once.
+/// Nothing to do for one with second moments (rank_engine.h).
+void gather(Ranks& ranks, Framebuffer& framebuffer);
+
+/// Sets chosen pixels to zero; all where null.
+void clear(Framebuffer& framebuffer, const std::vector<std::uint32_t>* pixels);
+/// Everybody's chosen pixels become the sum of all.
+void sum_everywhere(Ranks& ranks, Framebuffer& framebuffer, const std::vector<std::uint32_t>* pixels);
+
+/// Tells what rank 0 has read from a checkpoint: all but the sums, which one rank must hold and no other, unless they
+/// have second moments.
+void broadcast(Ranks& ranks, RenderSums& sums);
+
+/// What each rank did, at rank 0; nothing elsewhere. Without rounds.
+std::vector<RenderReport> gather(Ranks& ranks, const RenderReport& own);
+
+/// The reports of all ranks as one: the threads of each, one rank behind the other, which wait for each other.
+RenderReport joined(const std::vector<RenderReport>& ranks);
+
+}  // namespace raypool::cluster

@@ -1,0 +1,146 @@
+"""Several ranks make the image of one process, and lose nothing that a checkpoint holds."""
+
+import itertools
+import json
+import os
+import signal
+import subprocess
+import time
+
+from command import CommandTest, main
+
+SETTINGS = {  # as any user, on fewer cores than ranks
+    "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_hwloc_base_binding_policy": "none", "OMP_WAIT_POLICY": "passive",
+}
+PAPER = ("render", "paper", "--width", 160, "--spp", 60)
+LONG = ("render", "paper", "--width", 160, "--spp", 400)
+
+
+class MpiTest(CommandTest):
+    def ranks(self, count, *arguments, environment=None, **keywords):
+        return subprocess.run(
+            ["mpirun", "-n", str(count), self.command, *map(str, arguments)], cwd=self.folder, text=True, timeout=60,
+            env={**os.environ, **SETTINGS, **(environment or {})}, capture_output=True, stdin=subprocess.DEVNULL,
+            check=False, **keywords)
+
+    def hash_of(self, result):
+        self.assertEqual((result.returncode, result.stdout.count("hash ")), (0, 1), result.stderr)
+        return result.stdout.split("hash ")[1].split()[0]
+
+    def alone(self, *arguments):
+        return self.hash_of(self.run_well(*arguments))
+
+    def start(self, count, *arguments):
+        """mpirun, with a checkpoint c.sums after every piece, and the processes of the ranks once it is there."""
+        process = subprocess.Popen(
+            ["mpirun", "-n", str(count), self.command, *map(str, arguments), "--checkpoint", "c.sums", "--every", "0"],
+            cwd=self.folder, env={**os.environ, **SETTINGS}, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        while not (self.folder / "c.sums").exists():
+            self.assertIsNone(process.poll(), "ended before its first checkpoint")
+            time.sleep(0.01)
+        children = f"/proc/{process.pid}/task/{process.pid}/children"
+        with open(children) as file:
+            ranks = [int(child) for child in file.read().split()]
+        self.assertEqual(len(ranks), count)
+        return process, sorted(ranks)
+
+    def test_any_ranks_threads_and_engine_make_one_hash(self):
+        expected = self.alone(*PAPER)
+        for count, threads, engine in itertools.product((1, 2, 3, 5), (1, 2), ("recursive", "wavefront")):
+            result = self.ranks(count, *PAPER, "--threads", threads, "--engine", engine)
+            self.assertEqual(self.hash_of(result), expected, result.args)
+
+    def test_adaptive_render_makes_one_hash(self):
+        adaptive = ("render", "half_sky", "--width", 100, "--target-error", 0.003, "--spp", 5000, "--threads", 1)
+        expected = self.alone(*adaptive)
+        for count in (2, 3):
+            self.assertEqual(self.hash_of(self.ranks(count, *adaptive)), expected)
+        process, ranks = self.start(2, *adaptive)
+        os.kill(ranks[1], signal.SIGKILL)
+        process.communicate(timeout=60)
+        result = self.ranks(3, *adaptive, "--checkpoint", "c.sums", "--resume")
+        self.assertEqual(self.hash_of(result), expected)
+
+    def test_parts_of_different_ranks_add_up(self):
+        expected = self.alone(*PAPER)
+        parts = {"0:25": 3, "25:26": 2, "26:60": 1}
+        for part, count in parts.items():
+            self.hash_of(self.ranks(count, *PAPER, "--threads", 1, "--samples", part, "--checkpoint", f"{part}.sums"))
+        for order in itertools.permutations(parts):
+            self.assertEqual(self.alone("merge", *(f"{part}.sums" for part in order)), expected)
+
+    def test_rank_that_dies_ends_the_job_and_the_checkpoint_goes_on_with_other_ranks(self):
+        expected = self.alone(*LONG)
+        for victim in (0, 2):
+            (self.folder / "c.sums").unlink(missing_ok=True)
+            process, ranks = self.start(3, *LONG, "--threads", 1)
+            os.kill(ranks[victim], signal.SIGKILL)
+            _, error = process.communicate(timeout=60)
+            self.assertNotEqual(process.returncode, 0)
+            self.assertRegex(error, f"process rank {victim} .* signal 9")
+            if victim != 0:
+                self.assertRegex(error, r"c\.sums holds \d+ samples a pixel: the same command with --resume")
+            kept = (self.folder / "c.sums").read_bytes()
+            self.assertEqual(self.alone(*LONG, "--checkpoint", "c.sums", "--resume"), expected)
+            (self.folder / "c.sums").write_bytes(kept)
+            resumed = self.ranks(2, *LONG, "--threads", 1, "--checkpoint", "c.sums", "--resume", "--stats", "s.json")
+            self.assertEqual(self.hash_of(resumed), expected)
+            stats = json.loads((self.folder / "s.json").read_text())
+            self.assertEqual(stats["samples_done"], 400)
+            self.assertLess(stats["paths"], 400 * 160 * 90)
+
+    def test_signal_to_one_rank_stops_all_with_a_checkpoint(self):
+        process, ranks = self.start(2, *LONG, "--threads", 1, "-o", "part.pfm")
+        os.kill(ranks[1], signal.SIGINT)
+        _, error = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("stopped; c.sums holds", error)
+        self.assertTrue((self.folder / "part.pfm").exists())
+        self.assertEqual(self.alone(*LONG, "--checkpoint", "c.sums", "--resume"), self.alone(*LONG))
+
+    def test_slow_rank_gets_less_work(self):
+        result = self.ranks(2, *LONG, "--threads", 1, "--stats", "s.json", "-o", "a.pfm",
+                            environment={"RAYPOOL_SLOW_RANK": "1:8"})
+        self.assertEqual(self.hash_of(result), self.alone(*LONG, "-o", "b.pfm"))
+        self.assertEqual((self.folder / "a.pfm").read_bytes(), (self.folder / "b.pfm").read_bytes())
+        stats = json.loads((self.folder / "s.json").read_text())
+        fast, slow = stats["ranks"]
+        self.assertLess(slow["paths"], fast["paths"] / 2)
+        self.assertEqual(fast["paths"] + slow["paths"], 400 * 160 * 90)
+        self.assertEqual(stats["paths"], 400 * 160 * 90)
+        self.assertEqual([len(stats["threads"]), fast["threads"], slow["threads"]], [2, 1, 1])
+        self.assertEqual(sum(thread["segments"] for thread in stats["threads"]), stats["segments"])
+
+    def test_error_is_said_once_and_ends_all(self):
+        cases = [
+            (("render", "absent.json"), 2, "absent.json"),
+            (("render", "paper", "--spp", 0), 2, "--spp"),
+            (("render", "paper", "--trace", "t.json"), 2, "--trace"),
+            (("render", "paper", "--depth", 1000000), 2, "--depth"),
+            (("render", "paper", "--spp", 1, "-o", "absent/a.png"), 2, "absent/a.png"),
+            (("render", "scene.json", "--spp", 1, "--checkpoint", "/dev/full"), 2, "/dev/full"),
+            (("merge", "a.sums"), 2, "render"),
+            (("render", "scene.json", "--checkpoint", "scene.json", "--resume"), 2, "scene.json"),
+        ]
+        for arguments, status, named in cases:
+            result = self.ranks(3, *arguments)
+            self.assertEqual((result.returncode, result.stdout), (status, ""), result.stderr)
+            self.assertEqual(result.stderr.count("raypool: "), 1, result.stderr)
+            self.assertIn(named, result.stderr.split("raypool: ")[1].split("\n")[0])
+        result = self.ranks(2, *LONG, environment={"RAYPOOL_SLOW_RANK": "fast"})
+        self.assertEqual((result.returncode, result.stderr.count("raypool: ")), (2, 1))
+
+    def test_error_of_one_rank_names_it_and_ends_all(self):
+        script = 'if [ "$OMPI_COMM_WORLD_RANK" = 1 ]; then ulimit -s 256; fi; exec "$@"'
+        command = ["mpirun", "-n", "2", "sh", "-c", script, "sh", self.command, "render", "paper", "--spp", "100",
+                   "--depth", "5000", "--threads", "1"]
+        result = subprocess.run(command, cwd=self.folder, env={**os.environ, **SETTINGS}, capture_output=True,
+                                text=True, timeout=60, check=False)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertRegex(result.stderr, "raypool: rank 1 of 2: --depth")
+
+
+if __name__ == "__main__":
+    main()
