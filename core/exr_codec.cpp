@@ -12,9 +12,9 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <string_view>
 #include <utility>
 
+#include "core/exr_header.h"
 #include "core/image_codecs.h"
 
 namespace raypool {
@@ -63,54 +63,18 @@ class MemoryInput final : public Imf::IStream {
     std::size_t position_ = 0;
 };
 
-/// Reads the front of a file piece by piece; a piece that is not all there throws.
-class HeaderWalk {
-  public:
-    explicit HeaderWalk(std::string_view text) : rest_(text) {}
-
-    std::string_view take(std::size_t size) {
-        if (size > rest_.size()) throw std::runtime_error("the file ends too early");
-        const std::string_view piece = rest_.substr(0, size);
-        rest_.remove_prefix(size);
-        return piece;
-    }
-    std::string_view take_name() {
-        const std::string_view name = take(std::min(rest_.find('\0'), rest_.size()));
-        take(1);
-        return name;
-    }
-    std::int32_t take_int() {
-        std::int32_t value = 0;
-        std::memcpy(&value, take(sizeof value).data(), sizeof value);
-        return value;
-    }
-
-  private:
-    std::string_view rest_;
-};
-
-/// Checks what OpenEXR would take at its word when it reserves memory: the sizes of attributes and of the image.
+/// Checks what OpenEXR would take at its word when it reserves memory: attributes, and the sizes of rows and image.
 void check_header(BytesView bytes) {
-    constexpr std::int32_t kMagic = 20000630;
-    constexpr std::int32_t kLongNames = 0x400;  // the only flag of a plain file of scan lines
-    HeaderWalk walk({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    if (walk.take_int() != kMagic) throw std::runtime_error("not an EXR file");
-    std::int32_t version = walk.take_int();
-    if ((version & ~kLongNames) != 2) {
-        throw std::runtime_error("must be version 2 and one part of scan lines: no tiles, deep data or parts");
-    }
-    while (!walk.take_name().empty()) {
-        walk.take_name();  // the type
-        walk.take(static_cast<std::size_t>(walk.take_int()));
-    }
-
+    auto [version, channel_count] = check_exr_header(bytes);
     MemoryInput stream(bytes);
-    stream.seekg(sizeof kMagic + sizeof version);
+    stream.seekg(sizeof kExrMagic + sizeof version);
     Imf::Header header;
     header.readFrom(stream, version);
     const auto& window = header.dataWindow();
-    check_image_size(std::int64_t{window.max.x} - window.min.x + 1, std::int64_t{window.max.y} - window.min.y + 1,
-                     kMaxImageSide);
+    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+    check_image_size(width, std::int64_t{window.max.y} - window.min.y + 1, kMaxImageSide);
+    constexpr std::int64_t kMostRowValues = std::int64_t{1} << 20;  // a codec may want 256 rows at once
+    if (width * channel_count > kMostRowValues) throw std::runtime_error("too many channels for its width");
 }
 
 /// The three channels of the rows in `window`, stored from `first` on.
