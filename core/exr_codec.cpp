@@ -2,6 +2,7 @@
 /// Layout of a header: https://openexr.com/en/latest/OpenEXRFileLayout.html
 
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
@@ -120,9 +121,10 @@ Image decode_exr(BytesView bytes) {
     image.height = std::int64_t{window.max.y} - window.min.y + 1;
 
     // Memory grows with the rows that are really there: how far a row may have been compressed depends on the codec.
-    constexpr std::int64_t kRowsPerStep = 256;  // a multiple of the rows in a block of any codec
-    for (std::int64_t row = 0; row < image.height; row += kRowsPerStep) {
-        const std::int64_t row_end = std::min(row + kRowsPerStep, image.height);
+    // A step is a multiple of the rows in a block.
+    const std::int64_t rows_per_step = file.header().compression() == Imf::DWAB_COMPRESSION ? 256 : 32;
+    for (std::int64_t row = 0; row < image.height; row += rows_per_step) {
+        const std::int64_t row_end = std::min(row + rows_per_step, image.height);
         image.rgb.resize(static_cast<std::size_t>(row_end * image.width * 3));
         auto rows = window;
         rows.min.y = static_cast<int>(window.min.y + row);
