@@ -2,6 +2,7 @@
 /// Layout of a header: https://openexr.com/en/latest/OpenEXRFileLayout.html
 
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
@@ -12,9 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <string_view>
 #include <utility>
 
+#include "core/exr_header.h"
 #include "core/image_codecs.h"
 
 namespace raypool {
@@ -63,54 +64,18 @@ class MemoryInput final : public Imf::IStream {
     std::size_t position_ = 0;
 };
 
-/// Reads the front of a file piece by piece; a piece that is not all there throws.
-class HeaderWalk {
-  public:
-    explicit HeaderWalk(std::string_view text) : rest_(text) {}
-
-    std::string_view take(std::size_t size) {
-        if (size > rest_.size()) throw std::runtime_error("the file ends too early");
-        const std::string_view piece = rest_.substr(0, size);
-        rest_.remove_prefix(size);
-        return piece;
-    }
-    std::string_view take_name() {
-        const std::string_view name = take(std::min(rest_.find('\0'), rest_.size()));
-        take(1);
-        return name;
-    }
-    std::int32_t take_int() {
-        std::int32_t value = 0;
-        std::memcpy(&value, take(sizeof value).data(), sizeof value);
-        return value;
-    }
-
-  private:
-    std::string_view rest_;
-};
-
-/// Checks what OpenEXR would take at its word when it reserves memory: the sizes of attributes and of the image.
+/// Checks what OpenEXR would take at its word when it reserves memory: attributes, and the sizes of rows and image.
 void check_header(BytesView bytes) {
-    constexpr std::int32_t kMagic = 20000630;
-    constexpr std::int32_t kLongNames = 0x400;  // the only flag of a plain file of scan lines
-    HeaderWalk walk({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    if (walk.take_int() != kMagic) throw std::runtime_error("not an EXR file");
-    std::int32_t version = walk.take_int();
-    if ((version & ~kLongNames) != 2) {
-        throw std::runtime_error("must be version 2 and one part of scan lines: no tiles, deep data or parts");
-    }
-    while (!walk.take_name().empty()) {
-        walk.take_name();  // the type
-        walk.take(static_cast<std::size_t>(walk.take_int()));
-    }
-
+    auto [version, channel_count] = check_exr_header(bytes);
     MemoryInput stream(bytes);
-    stream.seekg(sizeof kMagic + sizeof version);
+    stream.seekg(sizeof kExrMagic + sizeof version);
     Imf::Header header;
     header.readFrom(stream, version);
     const auto& window = header.dataWindow();
-    check_image_size(std::int64_t{window.max.x} - window.min.x + 1, std::int64_t{window.max.y} - window.min.y + 1,
-                     kMaxImageSide);
+    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+    check_image_size(width, std::int64_t{window.max.y} - window.min.y + 1, kMaxImageSide);
+    constexpr std::int64_t kMostRowValues = std::int64_t{1} << 20;  // a codec may want 256 rows at once
+    if (width * channel_count > kMostRowValues) throw std::runtime_error("too many channels for its width");
 }
 
 /// The three channels of the rows in `window`, stored from `first` on.
@@ -156,9 +121,10 @@ Image decode_exr(BytesView bytes) {
     image.height = std::int64_t{window.max.y} - window.min.y + 1;
 
     // Memory grows with the rows that are really there: how far a row may have been compressed depends on the codec.
-    constexpr std::int64_t kRowsPerStep = 256;  // a multiple of the rows in a block of any codec
-    for (std::int64_t row = 0; row < image.height; row += kRowsPerStep) {
-        const std::int64_t row_end = std::min(row + kRowsPerStep, image.height);
+    // A step is a multiple of the rows in a block.
+    const std::int64_t rows_per_step = file.header().compression() == Imf::DWAB_COMPRESSION ? 256 : 32;
+    for (std::int64_t row = 0; row < image.height; row += rows_per_step) {
+        const std::int64_t row_end = std::min(row + rows_per_step, image.height);
         image.rgb.resize(static_cast<std::size_t>(row_end * image.width * 3));
         auto rows = window;
         rows.min.y = static_cast<int>(window.min.y + row);

@@ -1,4 +1,5 @@
-/// Each image format as functions between pixels and the bytes of a file; image_file.h is the only caller.
+/// Each image format as functions between pixels and the bytes of a file; called by image_file.cpp and the fuzz
+/// targets.
 ///
 /// They throw std::exceptions that say what is wrong with the bytes, for the caller to put the file's name in front.
 /// Decoders trust nothing in the bytes: dimensions are checked against the limits and, as far as the format allows,
@@ -22,7 +23,7 @@ using Bytes = std::vector<std::byte>;
 using BytesView = std::span<const std::byte>;
 
 Bytes encode_png(const Image& image, const ImageAttributes& attributes);
-Image decode_png(BytesView bytes, std::int64_t max_side);
+Image decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels);
 
 Bytes encode_exr(const Image& image, const ImageAttributes& attributes);
 Image decode_exr(BytesView bytes);
@@ -31,11 +32,12 @@ ImageAttributes decode_exr_attributes(BytesView bytes);
 Bytes encode_pfm(const Image& image);
 Image decode_pfm(BytesView bytes);
 
-inline void check_image_size(std::int64_t width, std::int64_t height, std::int64_t max_side) {
-    if (width < 1 || height < 1 || width > max_side || height > max_side || width * height > kMaxImagePixels) {
+inline void check_image_size(std::int64_t width, std::int64_t height, std::int64_t max_side,
+                             std::int64_t max_pixels = kMaxImagePixels) {
+    if (width < 1 || height < 1 || width > max_side || height > max_side || width * height > max_pixels) {
         throw std::runtime_error(
             fmt::format("width and height must be within [1, {}] and at most {} pixels, got {} x {}", max_side,
-                        kMaxImagePixels, width, height));
+                        max_pixels, width, height));
     }
 }
 

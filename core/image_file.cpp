@@ -87,7 +87,7 @@ Image read_image(const fs::path& path) {
         const Bytes bytes = read_bytes(path);
         switch (format) {
             case ImageFormat::Png:
-                return decode_png(bytes, kMaxImageSide);
+                return decode_png(bytes, kMaxImageSide, kMaxImagePixels);
             case ImageFormat::Exr:
                 return decode_exr(bytes);
             case ImageFormat::Pfm:
@@ -101,9 +101,9 @@ ImageAttributes read_exr_attributes(const fs::path& path) {
     return naming(path, "read", [&] { return decode_exr_attributes(read_bytes(path)); });
 }
 
-std::shared_ptr<const ImageTexels> read_texture(const fs::path& path) {
+std::shared_ptr<const ImageTexels> read_texture(const fs::path& path, std::int64_t max_texels) {
     return naming(path, "read", [&] {
-        Image image = decode_png(read_bytes(path), kMaxTextureSide);
+        Image image = decode_png(read_bytes(path), kMaxTextureSide, max_texels);
         return std::make_shared<const ImageTexels>(
             ImageTexels{static_cast<int>(image.width), static_cast<int>(image.height), std::move(image.rgb)});
     });

@@ -23,6 +23,7 @@ namespace raypool {
 inline constexpr std::int64_t kMaxImageSide = 65536;
 inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 30;
 inline constexpr std::int64_t kMaxTextureSide = 16384;
+inline constexpr std::int64_t kMaxSceneTexels = std::int64_t{1} << 28;  ///< of all textures of a scene
 
 enum class ImageFormat { Png, Exr, Pfm };
 
@@ -41,7 +42,8 @@ Image read_image(const std::filesystem::path& path);
 /// All attributes of type string in the header of an EXR file.
 ImageAttributes read_exr_attributes(const std::filesystem::path& path);
 
-/// A PNG file, as read_image() reads it, of at most kMaxTextureSide on either side.
-std::shared_ptr<const ImageTexels> read_texture(const std::filesystem::path& path);
+/// A PNG file, as read_image() reads it, of at most kMaxTextureSide on either side and at most `max_texels`.
+std::shared_ptr<const ImageTexels> read_texture(const std::filesystem::path& path,
+                                                std::int64_t max_texels = kMaxSceneTexels);
 
 }  // namespace raypool

@@ -1,7 +1,7 @@
 /// Typed reading of a JSON document. Every refusal is an InputError of one line that names the file, the value's JSON
 /// pointer (RFC 6901), the rule and what was found: `a.json: /materials/red/fuzz: must be within [0, 1], got 1.7`.
 ///
-/// Called by scene_reader.cpp alone. A cursor refers to the document and to the file's name: both outlive it.
+/// Called by scene_parser.cpp alone. A cursor refers to the document and to the file's name: both outlive it.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 /// JSON text to a document, strictly: what RFC 8259 forbids is refused, and so are keys that appear twice, numbers
 /// beyond double precision and deep nesting. Every refusal is an InputError of one line.
 ///
-/// Called by scene_reader.cpp and json_cursor.cpp.
+/// Called by scene_parser.cpp, json_cursor.cpp and sums_file.cpp.
 #pragma once
 
 #include <cstddef>

@@ -177,7 +177,7 @@ png_text text_chunk(const std::string& name, const std::string& value) {
 
 }  // namespace
 
-Image decode_png(BytesView bytes, std::int64_t max_side) {
+Image decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels) {
     check_chunks(bytes);
     PngReader reader(bytes);
     const auto check = [&](bool is_ok) {
@@ -187,7 +187,7 @@ Image decode_png(BytesView bytes, std::int64_t max_side) {
     check(read_header(reader));
     const std::int64_t width = png_get_image_width(reader.png, reader.info);
     const std::int64_t height = png_get_image_height(reader.png, reader.info);
-    check_image_size(width, height, max_side);
+    check_image_size(width, height, max_side, max_pixels);
 
     // Deflate makes at most 258 bytes out of 2 bits.
     const std::int64_t row_bits =

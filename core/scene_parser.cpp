@@ -97,7 +97,8 @@ Background background(const JsonCursor& place) {
 }
 
 /// The texture's file lies below `folder` wherever links lead: a scene from elsewhere opens nothing else.
-std::shared_ptr<const ImageTexels> image_below(const fs::path& folder, const JsonCursor& place) {
+std::shared_ptr<const ImageTexels> image_below(const fs::path& folder, const JsonCursor& place,
+                                               std::int64_t max_texels) {
     const fs::path relative = place.text();
     const bool goes_up = std::find(relative.begin(), relative.end(), "..") != relative.end();
     if (relative.is_absolute() || goes_up) place.refuse("be a path below the scene's folder, without \"..\"");
@@ -112,13 +113,14 @@ std::shared_ptr<const ImageTexels> image_below(const fs::path& folder, const Jso
     }
 
     try {
-        return read_texture(folder / relative);
+        return read_texture(folder / relative, max_texels);
     } catch (const InputError& broken) {
         place.refuse("name a PNG image that can be read", broken.what());
     }
 }
 
-Texture texture(const fs::path& folder, JsonObject object) {
+/// `texels_left` is what the images of the scene may still hold together: a small file can be a large image.
+Texture texture(const fs::path& folder, JsonObject object, std::int64_t& texels_left) {
     using Kind = Texture::Kind;
     Texture texture;
     const std::string type = object.required("type").one_of({"solid", "checker_3d", "checker_uv", "image"});
@@ -127,7 +129,8 @@ Texture texture(const fs::path& folder, JsonObject object) {
         texture.even = object.required("color").vector3(0, kMaxRadiance);
     } else if (type == "image") {
         texture.kind = Kind::Image;
-        texture.image = image_below(folder, object.required("file"));
+        texture.image = image_below(folder, object.required("file"), texels_left);
+        texels_left -= std::int64_t{texture.image->width} * texture.image->height;
     } else {
         texture.kind = type == "checker_3d" ? Kind::Checker3d : Kind::CheckerUv;
         texture.even = object.required("even").vector3(0, kMaxRadiance);
@@ -154,8 +157,9 @@ class SceneReader {
         scene_.camera = camera(JsonObject(object.required("camera")));
         scene_.background = background(object.required("background"));
         if (const auto textures = object.optional("textures")) {
+            std::int64_t texels_left = kMaxSceneTexels;
             for (const auto& [name, place] : textures->members()) {
-                texture_ids_[name] = add(texture(texture_folder_, JsonObject(place)));
+                texture_ids_[name] = add(texture(texture_folder_, JsonObject(place), texels_left));
             }
         }
         if (const auto materials = object.optional("materials")) {

@@ -1,6 +1,7 @@
 #include "core/sums_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -13,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/json_parser.h"
 #include "core/output_file.h"
 #include "core/settings_text.h"
 
@@ -61,30 +63,56 @@ void append(std::string& text, std::span<const T> values) {
 /// Takes values off the front of `bytes`, which has enough.
 template <class T>
 void take(std::string_view& bytes, std::span<T> values) {
+    if (values.empty()) return;  // which may have no address
     std::memcpy(values.data(), bytes.data(), values.size_bytes());
     bytes.remove_prefix(values.size_bytes());
 }
 
+/// The whole file; of one that does not begin with a line only the beginning, which is refused.
 std::string read_bytes(const std::filesystem::path& path) {
     std::error_code error;
     if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
         throw InputError(fmt::format("{}: not a file", path.string()));  // a device may never end
     std::ifstream stream(path, std::ios::binary);
     if (!stream) throw InputError(fmt::format("{}: cannot open: {}", path.string(), std::strerror(errno)));
-    std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    if (stream.bad()) throw InputError(fmt::format("{}: cannot read", path.string()));
+    std::string bytes(kMostHeaderBytes, '\0');
+    const auto read_on = [&](std::size_t from) {
+        stream.read(bytes.data() + from, static_cast<std::streamsize>(bytes.size() - from));
+        if (stream.bad()) throw InputError(fmt::format("{}: cannot read", path.string()));
+        bytes.resize(from + static_cast<std::size_t>(stream.gcount()));
+    };
+    read_on(0);
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (!error && size > bytes.size() && bytes.find('\n') != std::string::npos) {
+        bytes.resize(size);
+        read_on(kMostHeaderBytes);
+    }
     return bytes;
+}
+
+/// A whole number that is written as one.
+std::int64_t whole(const json& value) {
+    if (!value.is_number_integer()) throw InputError("a number of its header is not whole");
+    return value.get<std::int64_t>();
+}
+
+/// A text of the key, which messages repeat.
+std::string printable(const json& value) {
+    auto text = value.get<std::string>();
+    if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }))
+        throw InputError("its key has control characters");
+    return text;
 }
 
 /// Throws json::exception for a header that is not as header_of() makes it.
 RenderSums parsed(const json& header, std::string_view payload) {
-    const auto whole = [&](const char* name, std::int64_t least, std::int64_t most) {
-        const auto value = header.at(name).get<std::int64_t>();
+    const auto within = [&](const char* name, std::int64_t least, std::int64_t most) {
+        const std::int64_t value = whole(header.at(name));
         if (value < least || value > most) throw InputError(fmt::format("{} is {}", name, value));
         return value;
     };
-    const std::int64_t width = whole("width", 1, kMostPixels);
-    const std::int64_t height = whole("height", 1, kMostPixels / width);
+    const std::int64_t width = within("width", 1, kMostPixels);
+    const std::int64_t height = within("height", 1, kMostPixels / width);
     const bool has_squares = header.at("has_squares").get<bool>();
     const bool has_counts = header.at("has_counts").get<bool>();
     const auto pixels = static_cast<std::size_t>(width * height);
@@ -92,20 +120,20 @@ RenderSums parsed(const json& header, std::string_view payload) {
     if (payload.size() != bytes)
         throw InputError(fmt::format("{} bytes of sums in place of {}", payload.size(), bytes));
 
-    const FixedPoint fixed{static_cast<int>(whole("fraction_bits", -1100, 1100)),
-                           std::ldexp(1.0, static_cast<int>(whole("limit_bits", -1000, 1000))),
-                           static_cast<int>(whole("square_bits", -2200, 2200))};
+    const FixedPoint fixed{static_cast<int>(within("fraction_bits", -1100, 1100)),
+                           std::ldexp(1.0, static_cast<int>(within("limit_bits", -1000, 1000))),
+                           static_cast<int>(within("square_bits", -2200, 2200))};
     RenderSums sums{{},
                     {},
                     std::vector<std::int32_t>(has_counts ? pixels : 0),
-                    static_cast<int>(whole("rounds", 0, 1 << 30)),
+                    static_cast<int>(within("rounds", 0, 1 << 30)),
                     Framebuffer(width, height, fixed, has_squares ? Moments::Second : Moments::First)};
-    for (const json& pair : header.at("key"))
-        sums.key.emplace_back(pair.at(0).get<std::string>(), pair.at(1).get<std::string>());
+    for (const json& pair : header.at("key")) sums.key.emplace_back(printable(pair.at(0)), printable(pair.at(1)));
     for (const json& pair : header.at("ranges")) {
-        const SampleRange range{pair.at(0).get<std::int64_t>(), pair.at(1).get<std::int64_t>()};
-        if (range.first < 0 || range.end <= range.first) throw InputError("a range of samples is empty");
-        sums.ranges = with_range(std::move(sums.ranges), range);
+        const SampleRange range{whole(pair.at(0)), whole(pair.at(1))};
+        if (range.first <= (sums.ranges.empty() ? -1 : sums.ranges.back().end) || range.end <= range.first)
+            throw InputError("its ranges of samples do not rise or are not apart");
+        sums.ranges.push_back(range);
     }
     take(payload, sums.framebuffer.sums());
     take(payload, sums.framebuffer.squares());
@@ -189,30 +217,38 @@ void write_sums(const std::filesystem::path& path, const RenderSums& sums) {
     write_whole(path, std::as_bytes(std::span(text)));
 }
 
-RenderSums read_sums(const std::filesystem::path& path) {
-    const std::string bytes = read_bytes(path);
+RenderSums decode_sums(std::string_view content, const std::string& name) {
     const auto refuse = [&](std::string_view why) -> InputError {
-        return InputError(fmt::format("{}: {}", path.string(), why));
+        return InputError(fmt::format("{}: {}", name, why));
     };
-    std::string_view text = bytes;
-    const std::size_t line = text.substr(0, kMostHeaderBytes).find('\n');
-    const json header = line == std::string_view::npos ? json() : json::parse(text.substr(0, line), nullptr, false);
+    const std::size_t line = content.substr(0, kMostHeaderBytes).find('\n');
+    json header;
+    try {
+        if (line != std::string_view::npos) header = parse_json(content.substr(0, line), name);
+    } catch (const InputError&) {
+        header = {};  // said below
+    }
     if (!header.is_object() || header.value("format", json()) != kFormat)
         throw refuse("not a checkpoint or part of a render, or its beginning is damaged");
-    if (header.value("version", json()) != kVersion)
-        throw refuse(fmt::format("of version {}, this program reads version {}", header.value("version", json()).dump(),
-                                 kVersion));
-    if (text.size() < line + 1 + kChecksumLength ||
-        checksum(text.substr(0, text.size() - kChecksumLength)) != text.substr(text.size() - kChecksumLength))
+    const json version = header.value("version", json());
+    if (!version.is_number_integer()) throw refuse("damaged: it has no version");
+    if (version != kVersion)
+        throw refuse(fmt::format("of version {}, this program reads version {}", version.dump(), kVersion));
+    if (content.size() < line + 1 + kChecksumLength || checksum(content.substr(0, content.size() - kChecksumLength)) !=
+                                                           content.substr(content.size() - kChecksumLength))
         throw refuse("damaged: its checksum is wrong");
-    text.remove_suffix(kChecksumLength);
+    content.remove_suffix(kChecksumLength);
     try {
-        return parsed(header, text.substr(line + 1));
+        return parsed(header, content.substr(line + 1));
     } catch (const json::exception& error) {
         throw refuse(error.what());
     } catch (const InputError& error) {
         throw refuse(error.what());
     }
+}
+
+RenderSums read_sums(const std::filesystem::path& path) {
+    return decode_sums(read_bytes(path), path.string());
 }
 
 }  // namespace raypool

@@ -58,5 +58,7 @@ std::vector<SampleRange> gaps(const std::vector<SampleRange>& ranges, std::int64
 
 void write_sums(const std::filesystem::path& path, const RenderSums& sums);
 RenderSums read_sums(const std::filesystem::path& path);
+/// The content of a file, which refusals call `name`.
+RenderSums decode_sums(std::string_view content, const std::string& name);
 
 }  // namespace raypool

@@ -218,6 +218,7 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
         std::vector<Values> images;
         Pilot pilot = piloting.run(change.after, kPilotSpp, &images);
         for (std::size_t i = 0; i < images.size(); ++i)
+            // cppcheck-suppress containerOutOfBounds ; run() has filled it
             for (std::size_t k = 0; k < images[i].size(); ++k) images[i][k] -= trusted_images[i][k];
         pilot.bias = mean_squared_expectation(images);
         const Pilot& before = change.before == kTrusted ? trusted : pilots.front();

@@ -3,6 +3,7 @@
 RAYPOOL_KILLS=50 kills a render so many times (a few, where it is not set). The last test prints the table of faults.
 """
 
+import contextlib
 import ctypes
 import ctypes.util
 import json
@@ -30,6 +31,12 @@ def render(**changes):
 
 
 RENDER = render()
+SMALL = render(width=40)
+
+
+def mounted(what, where, *options):
+    """Whether it could be; who is not root may not."""
+    return subprocess.run(["mount", *options, what, where], stderr=subprocess.DEVNULL, check=False).returncode == 0
 
 
 class CheckpointTest(CommandTest):
@@ -123,6 +130,57 @@ class CheckpointTest(CommandTest):
         lost = self.hash_of(self.run_well(*RENDER, "--checkpoint", "c.sums", "--resume")) != expected
         self.note("no room for the file (RLIMIT_FSIZE)", 1, int(lost), int(wrong))
         self.assertEqual(set(self.listing()), {"c.sums", "scene.json"})
+
+    def assert_disk_is_refused(self, fault, folder, finish, *cause):
+        """Images, figures and checkpoints into the folder are refused; what was there stays, and the render can go on."""
+        expected = self.hash_of(self.run_well(*SMALL))
+        before = {path.name: path.read_bytes() for path in folder.iterdir()}
+        new = [("-o", folder / f"new.{kind}") for kind in ("png", "exr", "pfm")]
+        new += [("--stats", folder / "new.json"), ("--trace", folder / "trace.json"), ("--checkpoint", folder / "new.sums")]
+        old = [("-o", folder / "old.png"), ("--checkpoint", folder / "c.sums", "--resume", "--every", 0)]
+        tries = lost = wrong = 0
+        for options in (*new, *old):
+            result = self.run_command(*SMALL, *options)
+            self.assert_one_line(result, 2, str(options[1]), *cause)
+            tries += 1
+            wrong += {path.name: path.read_bytes() for path in folder.iterdir()} != before
+        finish()
+        result = self.run_command(*SMALL, "--checkpoint", folder / "c.sums", "--resume")
+        lost += result.returncode != 0 or self.hash_of(result) != expected
+        self.note(fault, tries, lost, wrong)
+
+    def keep_old_files(self, disk):
+        self.run_well(*SMALL, "--samples", "0:10", "--checkpoint", disk / "c.sums")
+        (disk / "old.png").write_bytes(b"old")
+
+    def test_full_disk_of_its_own_is_an_error_and_leaves_what_was_there(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        if not mounted("tmpfs", disk, "-t", "tmpfs", "-o", "size=512k"):
+            self.skipTest("only root may mount a small disk")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        self.keep_old_files(disk)
+        with open(disk / "filler", "wb", buffering=0) as filler, contextlib.suppress(OSError):
+            while filler.write(bytes(512)):
+                pass
+        self.assert_disk_is_refused("no room on the disk (a small tmpfs)", disk, (disk / "filler").unlink,
+                                    "No space left")
+
+    def test_read_only_folder_is_an_error_before_anything_is_rendered(self):
+        """Rights do not bind root: a disk that is mounted for reading does."""
+        disk = self.folder / "disk"
+        disk.mkdir()
+        self.keep_old_files(disk)
+        if os.geteuid() != 0:
+            disk.chmod(0o555)
+            finish = lambda: disk.chmod(0o755)
+            self.addCleanup(finish)
+        elif mounted(disk, disk, "--bind") and mounted("none", disk, "-o", "remount,bind,ro"):
+            finish = lambda: subprocess.run(["mount", "-o", "remount,bind,rw", disk], check=True)
+            self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        else:
+            self.skipTest("may not mount")
+        self.assert_disk_is_refused("a folder that is read-only", disk, finish)
 
     def test_output_to_a_full_device_is_an_error(self):
         self.assert_one_line(self.run_command(*render(spp=1), "-o", "/dev/full"), 2, "/dev/full")

@@ -15,6 +15,7 @@
 
 #include "core/error.h"
 #include "core/json_parser.h"
+#include "tests/core/image_samples.h"
 
 namespace raypool {
 namespace {
@@ -374,6 +375,28 @@ TEST_F(SceneFolder, ATextureStaysBelowTheScenesFolderWhereverLinksLead) {
     write("scene/a.json",
           with(kSmallest, "\"shapes\"", R"("textures": {"t": {"type": "image", "file": "map.png"}}, "shapes")"));
     EXPECT_EQ(refusal([&] { read_scene(folder_ / "scene_by_link/a.json"); }), "");
+}
+
+TEST_F(SceneFolder, TexturesTogetherHoldNoMoreThanTheirLimit) {
+    fs::copy_file(kScenes / "textures/map.png", folder_ / "scene/map.png");
+    // As large as all images together may be, and so one too many after the other: refused before it is decoded.
+    constexpr std::size_t kSide = kMaxTextureSide;
+    const std::vector<std::vector<png_byte>> rows(kSide, std::vector<png_byte>(kSide / 8));
+    write("scene/whole.png", png_of(kSide, kSide, 1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, 0, rows));
+    write("scene/a.json", with(kSmallest, "\"shapes\"", R"("textures": {"a": {"type": "image", "file": "map.png"},
+        "b": {"type": "image", "file": "whole.png"}}, "shapes")"));
+    const std::string message = refusal([&] { read_scene(folder_ / "scene/a.json"); });
+    EXPECT_NE(message.find("/textures/b/file: must name a PNG image that can be read"), std::string::npos) << message;
+    EXPECT_NE(message.find("got 16384 x 16384"), std::string::npos) << message;
+}
+
+TEST_F(SceneFolder, AFileMayBeAsLongAsItsLimitAndNoLonger) {
+    constexpr std::size_t kLimit = std::size_t{256} << 20;
+    std::string text = kSmallest;
+    text.resize(kLimit, ' ');
+    EXPECT_EQ(read_scene(write("scene/a.json", text)).name, "a");
+    EXPECT_NE(refusal([&] { read_scene(write("scene/b.json", text + ' ')); }).find("must not be longer than"),
+              std::string::npos);
 }
 
 TEST_F(SceneFolder, AnAbsentOrBrokenTextureIsRefusedNamingSceneAndImage) {

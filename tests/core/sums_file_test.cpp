@@ -3,7 +3,9 @@
 
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <xxhash.h>
 
 #include "core/error.h"
 #include "tests/core/scratch_folder.h"
@@ -98,6 +100,64 @@ TEST_F(SumsFile, OfALaterVersionIsRefusedByItsVersion) {
     } catch (const InputError& error) {
         EXPECT_NE(std::string(error.what()).find("version 2"), std::string::npos) << error.what();
     }
+}
+
+/// What a file that begins so, with a right checksum, is refused with; empty if it is not.
+std::string refusal_of(std::string text) {
+    text += fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+    try {
+        static_cast<void>(decode_sums(text, "a.sums"));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+/// A file without its checksum, one pixel large, with `instead` in place of `part`.
+std::string changed(const std::string& part, const std::string& instead) {
+    const std::string header =
+        R"({"fraction_bits":40,"format":"raypool sums","has_counts":false,"has_squares":false,"height":1,"key":[["spp","40"]],)"
+        R"("limit_bits":2,"ranges":[[0,5],[7,40]],"rounds":0,"square_bits":30,"version":1,"width":1})";
+    const std::size_t at = header.find(part);
+    EXPECT_NE(at, std::string::npos) << part;
+    return std::string(header).replace(at, part.size(), instead) + "\n" + std::string(24, '\0');
+}
+
+TEST(HostileSums, AreRefusedWhereverTheirHeaderIsNotAsItIsWritten) {
+    EXPECT_EQ(refusal_of(changed("40", "40")), "");
+    for (const auto& [part, instead] :
+         std::initializer_list<std::pair<const char*, const char*>>{{"\"width\":1", "\"width\":2"},
+                                                                    {"\"width\":1", "\"width\":1.0"},
+                                                                    {"\"width\":1", "\"width\":true"},
+                                                                    {"\"width\":1", "\"width\":18446744073709551615"},
+                                                                    {"\"height\":1", "\"height\":4294967297"},
+                                                                    {"\"rounds\":0", "\"rounds\":1e300"},
+                                                                    {"\"rounds\":0", "\"rounds\":-1"},
+                                                                    {"\"version\":1", "\"version\":\"1\""},
+                                                                    {"[0,5],[7,40]", "[0,5],[5,40]"},
+                                                                    {"[0,5],[7,40]", "[7,40],[0,5]"},
+                                                                    {"[0,5],[7,40]", "[0,5],[7]"},
+                                                                    {"[0,5],[7,40]", "[-1,5]"},
+                                                                    {"[0,5],[7,40]", "[5,5]"},
+                                                                    {"[[\"spp\",\"40\"]]", "[[\"spp\",40]]"},
+                                                                    {"[[\"spp\",\"40\"]]", "[[\"\\u001b[2J\",\"40\"]]"},
+                                                                    {"\"rounds\":0", "\"rounds\":0,\"rounds\":0"}}) {
+        const std::string refusal = refusal_of(changed(part, instead));
+        EXPECT_EQ(refusal.find("a.sums: "), 0U) << instead;
+        EXPECT_EQ(refusal.find('\x1b'), std::string::npos) << instead;
+    }
+}
+
+TEST(HostileSums, NestedWithoutEndAreRefusedWithoutDescending) {
+    const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
+    EXPECT_NE(refusal_of(changed("\"version\":1", "\"version\":" + deep)), "");
+    EXPECT_NE(refusal_of(changed("\"raypool sums\"", deep)), "");
+}
+
+TEST_F(SumsFile, WithoutABeginningIsRefusedBeforeItIsReadWhole) {
+    write_bytes(path_, "");
+    std::filesystem::resize_file(path_, std::uintmax_t{1} << 40U);  // holds nothing; reading it would take all memory
+    EXPECT_THROW(static_cast<void>(read_sums(path_)), InputError);
 }
 
 TEST(SampleRanges, JoinWhereTheyTouchAndAreRefusedWhereTheyOverlap) {

@@ -1,0 +1,26 @@
+/// The attributes at the front of an EXR file, looked over before OpenEXR reads them.
+///
+/// OpenEXR reads most types of attribute without regard to the size that the file gives, reads on from wherever that
+/// leads, and reserves what it finds there as a size. So every attribute must take exactly the size that it is given.
+/// Layout: https://openexr.com/en/latest/OpenEXRFileLayout.html
+/// Called by exr_codec.cpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/image_codecs.h"
+
+namespace raypool {
+
+inline constexpr std::int32_t kExrMagic = 20000630;
+
+struct ExrHeader {
+    std::int32_t version;  ///< with its flags
+    std::int64_t channel_count;
+};
+
+/// Throws std::runtime_error for what is not a file of one part of scan lines with sound attributes.
+ExrHeader check_exr_header(BytesView bytes);
+
+}  // namespace raypool
