@@ -1,4 +1,4 @@
-// Rows 5a to 5e: paths that are long: their stack, their throughput, what a limit of depth takes, and their direction.
+// Rows 5a to 5e: paths that are long: their stack, their throughput, how they end, and their direction.
 
 #include <cmath>
 
@@ -8,6 +8,8 @@
 #include "bench/stability/stack.h"
 #include "core/engine.h"
 #include "core/framebuffer.h"
+#include "core/random.h"
+#include "core/shade.h"
 
 namespace raypool::stability {
 
@@ -75,6 +77,45 @@ double cut_off_from_closed_form(double depth, std::int64_t) {
     return std::abs(light_at_depth<Scalar>(static_cast<std::int64_t>(depth)) / expected - 1);
 }
 
+/// Ends a path by chance: says whether it goes on, with its throughput made up for that.
+struct NaiveRoulette {
+    template <class Scalar>
+    static bool survives(Scalar& throughput, Scalar random) {
+        const Scalar q = std::min(Scalar(0.95F), throughput);
+        throughput /= q;
+        return random < q;
+    }
+};
+struct OurRoulette {
+    template <class Scalar>
+    static bool survives(Scalar& throughput, Scalar random) {
+        Vec3<Scalar> grey = vec3<Scalar>(throughput, throughput, throughput);
+        const bool survives = survives_roulette<Scalar>(grey, random, true);
+        throughput = grey[0];
+        return survives;
+    }
+};
+/// Light from within a closed sphere that shines with 1 and reflects 99 %, by so many paths that roulette alone ends:
+/// the distance of their mean from 100, in standard errors of paths that end where light is absorbed.
+template <class Scalar, class Roulette>
+double roulette_error(double paths, std::int64_t) {
+    const auto count = static_cast<std::uint32_t>(paths);
+    double sum = 0;
+    for (std::uint32_t path = 0; path < count; ++path) {
+        auto throughput = Scalar(1);
+        bool is_alive = true;
+        for (std::uint32_t hit = 0; is_alive && hit < 100'000; ++hit) {
+            sum += static_cast<double>(throughput);
+            throughput *= Scalar(0.99F);
+            const Scalar random = random_block<Scalar>(path, 0U, random_block_id::kBounce + hit, random_seed(103))[3];
+            is_alive = Roulette::template survives<Scalar>(throughput, random);
+        }
+    }
+    const double albedo = static_cast<double>(0.99F);
+    const double expected = 1 / (1 - albedo);
+    return std::abs(sum / count - expected) / (std::sqrt(albedo) * expected / std::sqrt(count));
+}
+
 struct NaiveMirror {
     template <class Scalar>
     static Vec3<Scalar> direction(const Vec3<Scalar>& d, const Vec3<Scalar>& n) {
@@ -138,6 +179,17 @@ std::vector<Case> path_cases() {
          .methods = {{"a limit that nobody mentions", Kind::Naive, cut_off},
                      {"ours, float, from 1 - albedo^depth", Kind::Ours, cut_off_from_closed_form<float>},
                      {"ours, double, from 1 - albedo^depth", Kind::Ours, cut_off_from_closed_form<double>}}});
+    cases.push_back(
+        {.id = "roulette",
+         .row = "5d",
+         .parameter = "paths",
+         .values = {1e3, 1e4, 1e5},
+         .measure = "distance of the mean from the closed form, standard errors",
+         .tolerance = 4,
+         .symptom = "fireflies that no number of samples averages out",
+         .methods = {{"min(0.95, throughput), float", Kind::Naive, roulette_error<float, NaiveRoulette>},
+                     {"ours, min(1, throughput), float", Kind::Ours, roulette_error<float, OurRoulette>},
+                     {"ours, min(1, throughput), double", Kind::Ours, roulette_error<double, OurRoulette>}}});
     cases.push_back(
         {.id = "direction-drift",
          .row = "5e",

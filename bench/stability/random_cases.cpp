@@ -1,6 +1,9 @@
-// Row 7a: seeds. Neighbouring pixels must not know of each other, and threads must not be seen.
+// Row 7: random numbers. Neighbouring pixels must not know of each other, and threads must not be seen; and how fast
+// the error falls with the samples of a pixel.
 
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "bench/naive/random.h"
 #include "bench/stability/case.h"
@@ -58,6 +61,38 @@ double changed_pixels(double threads, std::int64_t) {
     return share(changed, static_cast<std::int64_t>(one.size()));
 }
 
+/// A number of the integral over the square (0: smooth; 1: a disc's edge) or over six dimensions in two blocks (2: the
+/// share of the cube below a plane).
+double integrand(int which, std::uint32_t pixel, std::uint32_t sample, const RandomSeed& seed) {
+    const std::array<float, 4> a = random_block<float>(pixel, sample, 0U, seed);
+    if (which == 0) return std::exp(static_cast<double>(a[0])) * std::cos(static_cast<double>(a[1]));
+    if (which == 1) return a[0] * a[0] + a[1] * a[1] < 0.5F ? 1 : 0;
+    const std::array<float, 4> b = random_block<float>(pixel, sample, 2U, seed);
+    return a[0] + a[1] + a[2] + a[3] + b[0] + b[1] < 3 ? 1 : 0;
+}
+constexpr double kIntegrals[] = {(std::numbers::e - 1) * 0.8414709848078965, std::numbers::pi / 8, 0.5};
+
+/// What is left of the RMSE when a pixel gets four times the samples: 4 to the slope fitted from 16 to 4096 of them.
+template <Sampler sampler>
+double left_of_error(double which, std::int64_t) {
+    constexpr std::uint32_t kPixels = 200;
+    constexpr std::uint32_t kMost = 4096;
+    const int f = static_cast<int>(which);
+    const RandomSeed seed = random_seed(1, sampler);
+    std::array<double, 5> squares{};
+    for (std::uint32_t pixel = 0; pixel < kPixels; ++pixel) {
+        double sum = 0;
+        std::size_t level = 0;
+        for (std::uint32_t i = 0; i < kMost; ++i) {
+            sum += integrand(f, pixel, i, seed);
+            if (i + 1 == 16U << (2 * level)) squares[level++] += std::pow(sum / (i + 1) - kIntegrals[f], 2);
+        }
+    }
+    double slope = 0;  // least squares at -2, -1, 0, 1, 2
+    for (int level = 0; level < 5; ++level) slope += (level - 2) * std::log2(squares[level]) / 2 / 10;
+    return std::exp2(slope);
+}
+
 template <float (*first)(std::uint32_t)>
 double time_first(std::int64_t calls) {
     double sum = 0;
@@ -99,6 +134,17 @@ std::vector<Case> random_cases() {
                      .symptom = "the image depends on the number of threads",
                      .methods = {{"a generator a thread", Kind::Naive, changed_pixels<false>},
                                  {"ours, keyed by pixel and sample", Kind::Ours, changed_pixels<true>}}});
+    cases.push_back({.id = "error-slope",
+                     .row = "7b",
+                     .parameter = "what is integrated: 0 smooth, 1 an edge, 2 an edge in six dimensions",
+                     .values = {0, 1, 2},
+                     .measure = "RMSE left by four times the samples, part",
+                     .tolerance = 0.41,
+                     .symptom = "noise that falls no faster than the square root of the samples",
+                     .methods = {{"independent", Kind::Naive, left_of_error<Sampler::Independent>},
+                                 {"ours, Owen-scrambled Sobol", Kind::Ours, left_of_error<Sampler::Sobol>}},
+                     .held = 2,
+                     .limit = "points in many dimensions are padded from points in four, and gain only a factor"});
     return cases;
 }
 

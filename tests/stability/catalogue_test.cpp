@@ -74,6 +74,12 @@ const Point kPoints[] = {
     {"below-one", "word / 2^32, float", 512, 0.2, 0.3},
     {"depth-limit", "a limit that nobody mentions", 50, 0.6, 0.61},
     {"depth-limit", "a limit that nobody mentions", 125, 0.28, 0.29},
+    {"roulette", "min(0.95, throughput), float", 1e5, 4, 1e3},
+    {"error-slope", "independent", 0, 0.435, 0.575},                 // slope -0.5 +- 0.1
+    {"error-slope", "independent", 1, 0.435, 0.575},                 // the same
+    {"error-slope", "ours, Owen-scrambled Sobol", 0, 0.12, 0.158},   // slope -1.43 +- 0.1
+    {"error-slope", "ours, Owen-scrambled Sobol", 1, 0.312, 0.412},  // slope -0.74 +- 0.1
+    {"error-slope", "ours, Owen-scrambled Sobol", 2, 0.406, 0.575},  // slope -0.525 +- 0.125
     {"direction-drift", "not made unit again, float", 1e6, 1e-3, 0.2},
     {"constant-sum", "float", 5e7, 0.5, 0.6},
     {"dark-scene", "fixed point at 2^-24", 1e-8, 1, 1},
