@@ -110,7 +110,7 @@ MpiRanks::MpiRanks() {
 
 int MpiRanks::fail(int status, const std::string& text) const {
     // What all ranks find wrong, rank 0 says: it ends the job while the others sleep.
-    if (!is_first()) std::this_thread::sleep_for(1s);
+    if (!is_first()) std::this_thread::sleep_for(5s);
     fmt::print(stderr, "raypool: {}{}\n", is_first() ? "" : fmt::format("rank {} of {}: ", rank_, count_), text);
     if (count_ > 1) MPI_Abort(MPI_COMM_WORLD, status);
     return status;
