@@ -75,15 +75,16 @@ std::string read_bytes(const std::filesystem::path& path) {
         throw InputError(fmt::format("{}: not a file", path.string()));  // a device may never end
     std::ifstream stream(path, std::ios::binary);
     if (!stream) throw InputError(fmt::format("{}: cannot open: {}", path.string(), std::strerror(errno)));
-    std::string bytes(kMostHeaderBytes, '\0');
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (error) throw InputError(fmt::format("{}: cannot read: {}", path.string(), error.message()));
+    std::string bytes(std::min<std::uintmax_t>(size, kMostHeaderBytes), '\0');
     const auto read_on = [&](std::size_t from) {
         stream.read(bytes.data() + from, static_cast<std::streamsize>(bytes.size() - from));
         if (stream.bad()) throw InputError(fmt::format("{}: cannot read", path.string()));
         bytes.resize(from + static_cast<std::size_t>(stream.gcount()));
     };
     read_on(0);
-    const std::uintmax_t size = std::filesystem::file_size(path, error);
-    if (!error && size > bytes.size() && bytes.find('\n') != std::string::npos) {
+    if (size > kMostHeaderBytes && bytes.find('\n') != std::string::npos) {
         bytes.resize(size);
         read_on(kMostHeaderBytes);
     }
