@@ -6,46 +6,25 @@
 
 #include "core/shade.h"
 #include "core/shapes.h"
+#include "tests/core/aimed_ray.h"
 #include "tests/core/exact_sphere.h"
 #include "tests/errors.h"
 #include "tests/random_inputs.h"
 
 namespace raypool::stability {
 
+using test::aimed;
 using test::Errors;
 using test::ExactSphere;
 using test::ExactVec;
 using test::Float128;
+using test::narrow;
+using test::perpendicular;
 using test::RandomInputs;
+using test::wide;
 
 /// As many rays at a time as a register holds: what methods are timed with.
 using Packet = Wide<float, static_cast<int>(stdx::native_simd<float>::size())>;
-
-template <class Scalar>
-Vec3<double> wide(const Vec3<Scalar>& v) {
-    return v.template cast<double>();
-}
-/// Not inlined: of float(x) turned back into double, three side by side, g++ 12 makes x (with -O2 and vectors), and so
-/// aims at where the rounded point is not.
-template <class Scalar>
-[[gnu::noinline]] Vec3<Scalar> narrow(const Vec3<double>& v) {
-    return v.cast<Scalar>();
-}
-inline Vec3<double> perpendicular(RandomInputs& random, const Vec3<double>& n) {
-    const Vec3<double> v = random.direction<double>();
-    return (v - v.dot(n) * n).normalized();
-}
-
-/// A ray from `distance` away whose line passes the centre at `impact` times the radius, as nearly as Scalar can say.
-template <class Scalar>
-Ray<Scalar> aimed(RandomInputs& random, const Vec3<Scalar>& center, double radius, double distance, double impact) {
-    const Vec3<double> away = random.direction<double>();
-    const Vec3<Scalar> origin = narrow<Scalar>(wide<Scalar>(center) + distance * away);
-    const double sine = impact * radius / distance;
-    const Vec3<double> aside = std::sqrt(1 - sine * sine) * perpendicular(random, away) + sine * away;
-    const Vec3<double> target = wide<Scalar>(center) + impact * radius * aside;
-    return {origin, narrow<Scalar>((target - wide<Scalar>(origin)).normalized()), 0};
-}
 
 /// Where a ray meets a sphere, as the engines compute it.
 template <class Scalar>

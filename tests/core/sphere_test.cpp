@@ -4,6 +4,7 @@
 #include "core/materials.h"
 #include "core/shade.h"
 #include "core/shapes.h"
+#include "tests/core/aimed_ray.h"
 #include "tests/core/exact_sphere.h"
 #include "tests/errors.h"
 #include "tests/random_inputs.h"
@@ -12,30 +13,6 @@ namespace raypool::test {
 namespace {
 
 constexpr int kRays = kInputs / 20;  // 128-bit arithmetic is slow
-
-template <class Scalar>
-Vec3<double> wide(const Vec3<Scalar>& v) {
-    return v.template cast<double>();
-}
-template <class Scalar>
-Vec3<Scalar> narrow(const Vec3<double>& v) {
-    return v.cast<Scalar>();
-}
-Vec3<double> perpendicular(RandomInputs& random, const Vec3<double>& n) {
-    const Vec3<double> v = random.direction<double>();
-    return (v - v.dot(n) * n).normalized();
-}
-
-/// A ray from `distance` away whose line passes the centre at `impact` times the radius, as nearly as Scalar can say.
-template <class Scalar>
-Ray<Scalar> aimed(RandomInputs& random, const Vec3<Scalar>& center, double radius, double distance, double impact) {
-    const Vec3<double> away = random.direction<double>();
-    const Vec3<Scalar> origin = narrow<Scalar>(wide<Scalar>(center) + distance * away);
-    const double sine = impact * radius / distance;
-    const Vec3<double> aside = std::sqrt(1 - sine * sine) * perpendicular(random, away) + sine * away;
-    const Vec3<double> target = wide<Scalar>(center) + impact * radius * aside;
-    return {origin, narrow<Scalar>((target - wide<Scalar>(origin)).normalized()), 0};
-}
 
 struct Verdict {
     int false_misses = 0;
