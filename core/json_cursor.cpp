@@ -17,7 +17,7 @@ constexpr std::size_t kLongestQuote = 60;  // of a value that a message repeats
 
 std::string quoted(const std::string& text) {
     const std::string whole = json(text).dump(-1, ' ', true);  // ASCII, so that cutting it cannot split a character
-    return whole.size() <= kLongestQuote ? whole : whole.substr(0, kLongestQuote) + "...\"";
+    return whole.size() <= kLongestQuote ? whole : fmt::format("{}...\"", std::string_view(whole).substr(0, kLongestQuote));
 }
 
 std::string describe(const json& value) {
@@ -29,7 +29,7 @@ std::string describe(const json& value) {
 
 std::string joined(const std::vector<std::string>& words) {
     std::string list;
-    for (const std::string& word : words) list += (list.empty() ? "" : ", ") + quoted(word);
+    for (const std::string& word : words) list += fmt::format("{}{}", list.empty() ? "" : ", ", quoted(word));
     return list.empty() ? "none" : list;
 }
 

@@ -21,6 +21,8 @@ inline constexpr int kInputs = 1'000'000;
 #else
 inline constexpr int kInputs = 20'000;
 #endif
+/// How many a statistical test draws: the same in every build, so that what passes once passes always.
+inline constexpr int kDraws = 1'000'000;
 
 class RandomInputs {
   public:

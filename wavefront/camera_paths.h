@@ -33,10 +33,13 @@ struct CameraLanes {
 class CameraPaths {
   public:
     CameraPaths(const PixelRange& range, std::int64_t image_width, std::int64_t first_sample, std::int64_t end_sample)
-        : range_(range), image_width_(image_width), first_sample_(first_sample), samples_(end_sample - first_sample) {
-        left_ = (range.x_end - range.x_begin) * (range.y_end - range.y_begin) * samples_;
-        seek(0);
-    }
+        : range_(range),
+          image_width_(image_width),
+          first_sample_(first_sample),
+          samples_(end_sample - first_sample),
+          left_((range.x_end - range.x_begin) * (range.y_end - range.y_begin) * samples_),
+          x_(range.x_begin),
+          y_(range.y_begin) {}
     /// Of the pixels of a list, which outlives this.
     CameraPaths(std::span<const std::uint32_t> pixels, std::int64_t image_width, std::int64_t first_sample,
                 std::int64_t end_sample)
@@ -148,7 +151,8 @@ class CameraPaths {
     std::int64_t first_sample_;
     std::int64_t samples_;
     std::int64_t left_;
-    std::int64_t x_, y_, sample_;  // the next path
+    std::int64_t x_, y_;  // of the next path
+    std::int64_t sample_ = 0;
 };
 
 }  // namespace raypool::wavefront

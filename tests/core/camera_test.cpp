@@ -124,7 +124,7 @@ TEST(Camera, SpreadsSamplesUniformlyOverPixelLensAndShutter) {
     const Camera<double> camera = make_camera<double>(description, kWidth, kHeight);
     for (const Sampler sampler : {Sampler::Independent, Sampler::Sobol}) {
         Grid film, lens, time_of_place;
-        for (std::uint32_t i = 0; i < kInputs; ++i) {
+        for (std::uint32_t i = 0; i < kDraws; ++i) {
             const std::uint32_t pixel = i % (kWidth * kHeight), x = pixel % kWidth, y = pixel / kWidth;
             const Ray<double> ray =
                 camera_ray<kEverything, double>(camera, x, y, pixel, i / (kWidth * kHeight), random_seed(0, sampler));

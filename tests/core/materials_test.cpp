@@ -29,7 +29,7 @@ TEST(DiffuseDirection, IsDistributedAsTheCosine) {
         const Vec3<double> forward = up.cross(right);
         constexpr int kEdge = 20;
         std::vector<std::int64_t> counts(kEdge * kEdge);
-        for (int i = 0; i < kInputs; ++i) {
+        for (int i = 0; i < kDraws; ++i) {
             const auto [u, v] = random.unit_square<float>();
             const auto d = diffuse_direction<float>(normal, unit_sphere<float>(u, v)).cast<double>().eval();
             const double cosine = d.dot(up);

@@ -58,7 +58,7 @@ TEST(RandomBlock, IsUniformInEachNumberItsLowBitsAndEachPair) {
     }
     // As a render draws them: line by line, some samples, some bounces.
     const RandomSeed seed = random_seed(0);
-    for (std::uint32_t i = 0; i < kInputs; ++i) {
+    for (std::uint32_t i = 0; i < kDraws; ++i) {
         const std::array<float, 4> block = random_block<float>(i / 40, i % 10, i / 10 % 4, seed);
         std::array<std::uint32_t, 4> word;
         for (int a = 0; a < 4; ++a) {
@@ -87,7 +87,7 @@ using Neighbour = void (*)(Key&);
 /// Each number of a block against each number of the neighbour's block.
 void expect_independent(Neighbour neighbour, Sampler sampler = Sampler::Independent) {
     std::array<std::array<Correlation, 4>, 4> correlation;
-    for (std::uint32_t i = 0; i < kInputs; ++i) {
+    for (std::uint32_t i = 0; i < kDraws; ++i) {
         const Key key{i / 10, i % 10, 2 + i % 3, i % 7};
         Key other = key;
         neighbour(other);
@@ -100,7 +100,7 @@ void expect_independent(Neighbour neighbour, Sampler sampler = Sampler::Independ
     for (int k = 0; k < 4; ++k) {
         for (int l = 0; l < 4; ++l) {
             EXPECT_FALSE(is_significant(correlation[k][l].p_value(), kTests)) << k << ' ' << l;
-            EXPECT_LT(std::abs(correlation[k][l].value()), std::max(0.006, 6 / std::sqrt(kInputs))) << k << ' ' << l;
+            EXPECT_LT(std::abs(correlation[k][l].value()), std::max(0.006, 6 / std::sqrt(kDraws))) << k << ' ' << l;
         }
     }
 }

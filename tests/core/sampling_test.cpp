@@ -76,7 +76,7 @@ constexpr int kWarps = 2;
 TEST(UnitSphere, IsUniform) {
     RandomInputs random(3);
     Grid grid;
-    for (int i = 0; i < kInputs; ++i) {
+    for (int i = 0; i < kDraws; ++i) {
         const auto [u, v] = random.unit_square<float>();
         const Vec3<float> d = unit_sphere<float>(u, v);
         grid.add((double{d[2]} + 1) / 2, turn(d[1], d[0]));
@@ -99,7 +99,7 @@ TEST(UnitSphere, HasLengthOneAlsoAtThePoles) {
 TEST(UnitDisc, IsUniform) {
     RandomInputs random(5);
     Grid grid;
-    for (int i = 0; i < kInputs; ++i) {
+    for (int i = 0; i < kDraws; ++i) {
         const auto [u, v] = random.unit_square<float>();
         const auto [x, y] = unit_disc<float>(u, v);
         grid.add(double{x} * x + double{y} * y, turn(y, x));
