@@ -13,6 +13,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 set(RAYPOOL_ARCH "native" CACHE STRING "Instruction set: the value of -march=")
 set(RAYPOOL_SANITIZE "" CACHE STRING "Sanitizers: the value of -fsanitize=, empty for none")
+option(RAYPOOL_FUZZ "Link the fuzz targets with libFuzzer; asks for clang++ and address in RAYPOOL_SANITIZE" OFF)
 option(RAYPOOL_WERROR "Treat warnings as errors" OFF)
 
 add_library(raypool_flags INTERFACE)

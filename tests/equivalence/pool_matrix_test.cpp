@@ -24,7 +24,7 @@ struct PoolCase {
     std::int32_t depth;
 };
 
-const std::vector<PoolCase> kCases{{"paper", 24, 14, 4, 50},       {"mirror_corridor", 12, 7, 1, 1000},
+const std::vector<PoolCase> kCases{{"paper", 24, 14, 4, 50},       {"mirror_corridor", 5, 3, 1, 1000},
                                    {"glass_stack", 20, 15, 4, 50}, {"cornell", 16, 16, 8, 50},
                                    {"textures", 24, 14, 3, 50},    {"one_sphere", 1, 1, 100, 50}};
 
