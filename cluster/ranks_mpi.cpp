@@ -105,7 +105,7 @@ MpiRanks::MpiRanks() {
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
     MPI_Comm_size(machine, &on_this_machine_);
     MPI_Comm_free(&machine);
-    if (count_ > 1 && threads < MPI_THREAD_SERIALIZED) std::exit(fail(2, "this MPI was built without threads"));
+    if (count_ > 1 && threads < MPI_THREAD_SERIALIZED) std::exit(MpiRanks::fail(2, "this MPI was built without threads"));
 }
 
 int MpiRanks::fail(int status, const std::string& text) const {
@@ -175,8 +175,8 @@ std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> 
         MPI_Probe(rank, kAnswerTag, MPI_COMM_WORLD, &status);
         int arriving = 0;
         MPI_Get_count(&status, MPI_BYTE, &arriving);
-        std::vector<std::byte>& one = all.emplace_back(static_cast<std::size_t>(arriving));
-        MPI_Recv(one.data(), arriving, MPI_BYTE, rank, kAnswerTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+        all.emplace_back(static_cast<std::size_t>(arriving));
+        MPI_Recv(all.back().data(), arriving, MPI_BYTE, rank, kAnswerTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     }
     return all;
 }
