@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <string>
@@ -41,6 +42,7 @@ void check(const CheckpointOptions& options) {
         if (options.is_resumed) throw InputError("--resume: needs --checkpoint FILE, the file to go on from");
         return;
     }
+    if (std::isnan(options.every_s)) throw InputError("--every: not a number");
     check_writable(options.file);
     if (!options.is_resumed && std::filesystem::exists(options.file))
         throw InputError(

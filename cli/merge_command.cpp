@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -52,8 +53,11 @@ void add(RenderSums& sum, const RenderSums& part) {
 
 int merge(const MergeOptions& options) {
     if (!options.output.empty()) image_format(options.output);
+    check_distinct({{"--output", options.output}, {"--checkpoint", options.checkpoint}});
     for (const std::string& file : {options.output, options.checkpoint})
         if (!file.empty()) check_writable(file);
+    if (std::filesystem::is_regular_file(options.checkpoint))
+        throw InputError(fmt::format("{}: is there already; remove it, or name another file", options.checkpoint));
     RenderSums sum = read_part(options.parts.front());
     std::int64_t spp = 0;
     with_name(options.parts.front(), [&] { spp = whole_number(sum.key, "spp", 1, kMostSpp); });

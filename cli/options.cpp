@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
+#include <map>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -37,6 +40,18 @@ int thread_count(int asked) {
         throw InputError(fmt::format("{}: must be at most {}{}, got {}", asked == 0 ? "OMP_NUM_THREADS" : "--threads",
                                      limit, limit < kMostThreads ? " (OMP_THREAD_LIMIT)" : "", count));
     return count;
+}
+
+void check_distinct(const std::vector<std::pair<std::string, std::string>>& files_by_option) {
+    std::map<std::filesystem::path, std::string> option_of;
+    for (const auto& [option, file] : files_by_option) {
+        if (file.empty()) continue;
+        std::error_code error;
+        const std::filesystem::path path = weakly_canonical(std::filesystem::absolute(file, error), error);
+        if (error || (exists(path, error) && !is_regular_file(path, error))) continue;  // a device, or refused elsewhere
+        const auto [other, is_new] = option_of.emplace(path, option);
+        if (!is_new) throw InputError(fmt::format("{}: {} is also the file of {}", option, file, other->second));
+    }
 }
 
 std::string check_file_name(const std::string& text) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/settings_text.h"
 #include "core/sums_file.h"
@@ -25,6 +27,9 @@ std::uint64_t parse_seed(std::string_view text);
 
 /// Threads as asked for with --threads, or OMP_NUM_THREADS where `asked` is 0. Refuses more than OpenMP would start.
 int thread_count(int asked);
+
+/// Refuses two options that name one file, which the later of them to be written would be. Empty names are none.
+void check_distinct(const std::vector<std::pair<std::string, std::string>>& files_by_option);
 
 /// Refuses an empty text, which a shell makes of a variable that is not set. For CLI::Option::check().
 std::string check_file_name(const std::string& text);

@@ -131,6 +131,11 @@ void make_ready(RenderOptions& options, const cluster::Ranks& ranks) {
 
 int render(RenderOptions& options, cluster::Ranks& ranks) {
     const Stopwatch total;
+    check_distinct({{"--output", options.output},
+                    {"--checkpoint", options.checkpoint.file},
+                    {"--stats", options.stats},
+                    {"--trace", options.trace},
+                    {"--cost-image", options.cost_image}});
     make_ready(options, ranks);
     RenderRecord record;
     record.settings = render_settings(options);
@@ -139,6 +144,8 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     record.engine = options.engine;
     record.target_error = options.target_error;
     if (std::isnan(options.target_error)) throw InputError("--target-error: not a number");
+    if (options.target_error > 0 && options.spp < 2)
+        throw InputError("--spp: must be at least 2 with --target-error: one sample does not tell its error");
     if (options.target_error > 0 && !options.samples.empty())
         throw InputError("--samples: which samples a pixel gets is for --target-error to decide");
     if (!options.output.empty()) {
@@ -163,6 +170,8 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;
     record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.precision));
+    if (!options.checkpoint.file.empty() && record.engine == "wavefront" && adds_reals(record.pool.accumulator))
+        throw InputError("--accumulator: atomic-float and atomic-double have no exact sums to keep in a --checkpoint");
     record.scene_name = scene.name;
     record.width = scene.width;
     record.height = scene.height;

@@ -68,11 +68,16 @@ ErrorEstimate estimate_error(const Framebuffer& framebuffer, const std::vector<s
 AdaptivePlan::AdaptivePlan(double target_error, std::int64_t most_samples, std::int64_t width, std::int64_t height)
     : target_error_(target_error), most_samples_(most_samples), counts_(static_cast<std::size_t>(width * height)) {}
 
+ErrorEstimate AdaptivePlan::estimate(const Framebuffer& framebuffer) {
+    ErrorEstimate estimate = estimate_error(framebuffer, counts_);
+    rmse_ = estimate.rmse;
+    return estimate;
+}
+
 std::vector<SamplePass> AdaptivePlan::next(const Framebuffer& framebuffer) {
     if (rounds_++ == 0) return passes(std::vector<float>(counts_.size(), 1));
 
-    const ErrorEstimate estimate = estimate_error(framebuffer, counts_);
-    rmse_ = estimate.rmse;
+    const ErrorEstimate estimate = this->estimate(framebuffer);
     if (rmse_ <= target_error_) return {};
 
     // By Neyman's rule a pixel should have samples in proportion to its deviation, as many as reach the error. Where

@@ -40,7 +40,7 @@ class AdaptivePlan {
   public:
     static constexpr std::int64_t kFirstSamples = 16;
 
-    /// For an RMSE of at most `target_error` (> 0, radiance), with at most `most_samples` a pixel.
+    /// For an RMSE of at most `target_error` (> 0, radiance), with at most `most_samples` (>= 2) a pixel.
     AdaptivePlan(double target_error, std::int64_t most_samples, std::int64_t width, std::int64_t height);
 
     /// Goes on from where another plan was: its sample counts and rounds.
@@ -55,7 +55,10 @@ class AdaptivePlan {
     std::vector<SamplePass> next(const Framebuffer& framebuffer);
 
     [[nodiscard]] const std::vector<std::int32_t>& sample_counts() const { return counts_; }
-    /// As estimated by the last next().
+    /// Looks at what next() asked for without asking for more. Returns what is left of the error.
+    ErrorEstimate estimate(const Framebuffer& framebuffer);
+
+    /// As estimated by the last next() or estimate().
     [[nodiscard]] double rmse() const { return rmse_; }
     /// How often next() was asked: estimates, and what followed from them.
     [[nodiscard]] int rounds() const { return rounds_; }
@@ -93,7 +96,10 @@ RenderReport render_adaptively(const Engine& engine, const CompiledScene<Scalar>
             settings.pixels = &pass.pixels;
             report.add(engine.render(scene, settings, framebuffer));
         }
-        if (!go_on()) break;
+        if (!go_on()) {
+            plan.estimate(framebuffer);
+            break;
+        }
     }
     return report;
 }
@@ -103,7 +109,7 @@ template <class Scalar>
 RenderReport render_adaptively(const Engine& engine, const CompiledScene<Scalar>& scene, const RenderSettings& settings,
                                double target_error, Framebuffer& framebuffer, AdaptiveReport& adaptive) {
     AdaptivePlan plan(target_error, settings.end_sample, scene.width, scene.height);
-    const RenderReport report = render_adaptively(engine, scene, settings, plan, framebuffer, [] { return true; });
+    RenderReport report = render_adaptively(engine, scene, settings, plan, framebuffer, [] { return true; });
     adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds()};
     return report;
 }

@@ -36,12 +36,13 @@ auto naming(const fs::path& path, const char* verb, Work work) {
     throw InputError(fmt::format("{}: cannot {}: {}", path.string(), verb, reason));
 }
 
-Bytes read_bytes(const fs::path& path) {
+constexpr std::uintmax_t kMaxImageBytes = std::uintmax_t{1} << 34;  // of the largest image, uncompressed, and some
+
+Bytes read_bytes(const fs::path& path, std::uintmax_t max_size) {
     std::error_code error;
     const std::uintmax_t size = fs::file_size(path, error);
     if (error) throw std::runtime_error(error.message());
-    constexpr std::uintmax_t kMaxFileSize = std::uintmax_t{1} << 34;  // the largest image, uncompressed, and some
-    if (size > kMaxFileSize) throw std::runtime_error("larger than any image that can be read");
+    if (size > max_size) throw std::runtime_error("larger than any image that can be read");
 
     errno = 0;
     std::ifstream file(path, std::ios::binary);
@@ -84,7 +85,7 @@ void write_image(const fs::path& path, const Image& image, const ImageAttributes
 Image read_image(const fs::path& path) {
     const ImageFormat format = image_format(path);
     return naming(path, "read", [&] {
-        const Bytes bytes = read_bytes(path);
+        const Bytes bytes = read_bytes(path, kMaxImageBytes);
         switch (format) {
             case ImageFormat::Png:
                 return decode_png(bytes, kMaxImageSide, kMaxImagePixels);
@@ -98,12 +99,13 @@ Image read_image(const fs::path& path) {
 }
 
 ImageAttributes read_exr_attributes(const fs::path& path) {
-    return naming(path, "read", [&] { return decode_exr_attributes(read_bytes(path)); });
+    return naming(path, "read", [&] { return decode_exr_attributes(read_bytes(path, kMaxImageBytes)); });
 }
 
 std::shared_ptr<const ImageTexels> read_texture(const fs::path& path, std::int64_t max_texels) {
     return naming(path, "read", [&] {
-        Image image = decode_png(read_bytes(path), kMaxTextureSide, max_texels);
+        const auto max_size = 9 * static_cast<std::uintmax_t>(max_texels) + (1U << 20U);  // 8 bytes a texel, and some
+        Image image = decode_png(read_bytes(path, max_size), kMaxTextureSide, max_texels);
         return std::make_shared<const ImageTexels>(
             ImageTexels{static_cast<int>(image.width), static_cast<int>(image.height), std::move(image.rgb)});
     });

@@ -128,6 +128,8 @@ class DocumentBuilder final : public nlohmann::json_sax<json> {
 }  // namespace
 
 json parse_json(std::string_view text, const std::string& file) {
+    if (text.find('\0') != std::string_view::npos)  // to the parser the end of the text
+        throw_refusal(file, "", "be text", "a byte that is zero");
     DocumentBuilder builder(text, file);
     json::sax_parse(text.begin(), text.end(), &builder);
     return builder.take_document();

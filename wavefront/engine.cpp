@@ -20,9 +20,7 @@ RenderReport render_any(const CompiledScene<Scalar>& scene, const RenderSettings
             "--accumulator: owned and owned-planar need --pool-scope thread, since no thread owns a pixel of a shared "
             "pool");
     check_settings(settings, framebuffer);
-    const bool adds_reals =
-        pool.accumulator == Accumulator::AtomicFloat || pool.accumulator == Accumulator::AtomicDouble;
-    if (framebuffer.has_squares() && adds_reals)
+    if (framebuffer.has_squares() && adds_reals(pool.accumulator))
         throw InputError("--accumulator: atomic-float and atomic-double keep no squares, which --target-error needs");
     const std::int64_t paths = path_count(scene, settings);
     if (settings.depth == 0 || paths == 0) {  // no path has a segment

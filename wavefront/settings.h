@@ -39,6 +39,11 @@ enum class Accumulator : std::uint8_t {
     AtomicDouble
 };
 
+/// Whether it adds floating-point numbers, so that the image depends on their order.
+constexpr bool adds_reals(Accumulator accumulator) {
+    return accumulator == Accumulator::AtomicFloat || accumulator == Accumulator::AtomicDouble;
+}
+
 /// Whether it needs pixels that belong to one thread, so a per-thread pool.
 constexpr bool needs_owned_pixels(Accumulator accumulator) {
     return accumulator == Accumulator::OwnedInt64 || accumulator == Accumulator::OwnedPlanarInt64;

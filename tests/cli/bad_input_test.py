@@ -1,5 +1,7 @@
 """Whatever is wrong with the input: one line that names the place, exit status 2, nothing written, no crash."""
 
+import itertools
+import json
 import os
 import struct
 import zlib
@@ -24,7 +26,8 @@ class BadScene(CommandTest):
 
     def test_that_is_no_json_is_refused(self):
         for text in ("", "{", "[1, 2", "hello", "{} {}", '{"description": "a",}', '{"a": 1 "b": 2}', "{'a': 1}",
-                     '{"description": "\x1b[2J\x7f" 3}', '{"description": "\ud800"}'.encode("utf-8", "surrogatepass"), b"\xff\xfe\0\0", b"\0" * 100):
+                     '{"description": "\x1b[2J\x7f" 3}', '{"description": "\ud800"}'.encode("utf-8", "surrogatepass"), b"\xff\xfe\0\0", b"\0" * 100,
+                     json.dumps(SCENE) + "\0", json.dumps(SCENE) + "\0{"):
             with self.subTest(text=text):
                 self.assert_scene_refused(text)
 
@@ -151,8 +154,22 @@ class BadOption(CommandTest):
         adaptive = ("render", "scene.json", "--target-error", 0.1)
         self.assert_refused(*adaptive, "--split-depth", 1, named=["--split-depth", "--target-error"])
         self.assert_refused(*adaptive, "--samples", "0:5", named=["--samples", "--target-error"])
+        self.assert_refused(*adaptive, "--spp", 1, named=["--spp", "--target-error"])
         self.assert_refused(*adaptive, "--engine", "wavefront", "--pool-scope", "shared", "--accumulator", "atomic-float",
                             named=["--accumulator", "--target-error"])
+
+    def test_for_what_a_checkpoint_cannot_hold_is_refused(self):
+        kept = ("render", "scene.json", "--checkpoint", "c.sums")
+        for accumulator in ("atomic-float", "atomic-double"):
+            self.assert_refused(*kept, "--engine", "wavefront", "--pool-scope", "shared", "--accumulator", accumulator,
+                                named=["--accumulator", "--checkpoint"])
+        self.assert_refused(*kept, "--every", "nan", named="--every")
+
+    def test_that_names_one_file_twice_is_refused(self):
+        (self.folder / "link").symlink_to(self.folder)
+        for first, second in itertools.combinations(("--output", "--checkpoint", "--stats", "--trace", "--cost-image"), 2):
+            self.assert_refused("render", "scene.json", first, "a.pfm", second, "link/a.pfm", named=[first, second])
+        self.assert_refused("merge", "part.sums", "-o", "a.pfm", "--checkpoint", "./a.pfm", named=["--output", "--checkpoint"])
 
     def test_that_is_unknown_is_refused(self):
         self.assert_refused("render", "scene.json", "--antialias", named="--antialias")

@@ -206,6 +206,7 @@ class CheckpointTest(CommandTest):
         self.assertEqual(result.returncode, 1)
         self.assertIn("100 to 260 are missing", result.stderr)
         self.assert_refused("merge", "0:100.sums", "0:100.sums", named=["0:100.sums", "there already"])
+        self.assert_refused("merge", "0:100.sums", "--checkpoint", "260:300.sums", named=["260:300.sums", "there already"])
         self.run_well(*RENDER, "--seed", 1, "--samples", "100:300", "--checkpoint", "other.sums")
         self.assert_refused("merge", "0:100.sums", "other.sums", named=["other.sums", "seed"])
 

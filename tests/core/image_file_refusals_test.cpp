@@ -191,6 +191,14 @@ TEST(Texture, RefusesWhatIsBrokenOrTooLargeByName) {
     } catch (const InputError& error) {
         EXPECT_EQ(error.what(), (folder / "text.png").string() + ": cannot read: not a PNG file");
     }
+    // A hole of a terabyte takes no disk: only the size says that it cannot be read.
+    std::filesystem::resize_file(folder / "text.png", std::uintmax_t{1} << 40U);
+    EXPECT_THROW(read_texture(folder / "text.png"), InputError);
+    const std::uintmax_t most = (std::uintmax_t{1} << 20U) + 9 * kMaxTextureSide;
+    std::filesystem::resize_file(folder / "widest.png", most);  // what follows the image is not read
+    EXPECT_EQ(read_texture(folder / "widest.png", kMaxTextureSide)->width, kMaxTextureSide);
+    std::filesystem::resize_file(folder / "widest.png", most + 1);
+    EXPECT_THROW(read_texture(folder / "widest.png", kMaxTextureSide), InputError);
     EXPECT_THROW(read_texture(folder / "absent.png"), InputError);
     EXPECT_THROW(read_texture(folder.path()), InputError);
 }
