@@ -151,12 +151,11 @@ void add_advise_command(CLI::App& app, int&) {
     CLI::App* sub =
         app.add_subcommand("advise", "Find the cheapest settings for an error, by trying them on the scene");
     sub->add_option("scene", command->scene, "Scene file, or the name of a built-in scene (default: paper)");
-    const auto in_range = [](double least, double most) { return CLI::Range(least, most); };
     sub->add_option("--target-error", command->target_error,
                     "Root mean square error, in linear radiance, that the image may have")
-        ->check(in_range(1e-9, 1e6));
+        ->check(check_within(1e-9, 1e6));
     sub->add_option("--target-time", command->target_time, "Seconds that the render may take")
-        ->check(in_range(1e-6, 1e9));
+        ->check(check_within(1e-6, 1e9));
     sub->add_option("--width", command->width, "Image width; the height follows (default: the scene's)")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
     sub->add_option("--threads", command->threads, "OpenMP threads (default: OMP_NUM_THREADS)")

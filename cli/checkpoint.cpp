@@ -4,7 +4,6 @@
 
 #include <array>
 #include <atomic>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <string>
@@ -42,7 +41,6 @@ void check(const CheckpointOptions& options) {
         if (options.is_resumed) throw InputError("--resume: needs --checkpoint FILE, the file to go on from");
         return;
     }
-    if (std::isnan(options.every_s)) throw InputError("--every: not a number");
     check_writable(options.file);
     if (!options.is_resumed && std::filesystem::exists(options.file))
         throw InputError(

@@ -54,6 +54,16 @@ void check_distinct(const std::vector<std::pair<std::string, std::string>>& file
     }
 }
 
+std::function<std::string(const std::string&)> check_within(double least, double most) {
+    return [least, most](const std::string& text) {
+        double value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool is_number = error == std::errc() && end == text.data() + text.size();
+        if (is_number && value >= least && value <= most) return std::string();
+        return fmt::format("must be a number in [{:g}, {:g}], got {}", least, most, text);
+    };
+}
+
 std::string check_file_name(const std::string& text) {
     return text.empty() ? "must name a file" : "";
 }

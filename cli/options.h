@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -30,6 +31,9 @@ int thread_count(int asked);
 
 /// Refuses two options that name one file, which the later of them to be written would be. Empty names are none.
 void check_distinct(const std::vector<std::pair<std::string, std::string>>& files_by_option);
+
+/// Refuses what is no number within [least, most]; NaN is none. For CLI::Option::check().
+std::function<std::string(const std::string&)> check_within(double least, double most);
 
 /// Refuses an empty text, which a shell makes of a variable that is not set. For CLI::Option::check().
 std::string check_file_name(const std::string& text);

@@ -1,6 +1,5 @@
 #include <unistd.h>
 
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -143,7 +142,6 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     record.precision = options.precision == "double" ? Precision::Double : Precision::Float;
     record.engine = options.engine;
     record.target_error = options.target_error;
-    if (std::isnan(options.target_error)) throw InputError("--target-error: not a number");
     if (options.target_error > 0 && options.spp < 2)
         throw InputError("--spp: must be at least 2 with --target-error: one sample does not tell its error");
     if (options.target_error > 0 && !options.samples.empty())
@@ -217,7 +215,7 @@ void add_render_command(CLI::App& app, cluster::Ranks& ranks, int& status) {
     command
         ->add_option("--target-error", options->target_error,
                      "Give pixels samples, at most --spp, until the image's estimated RMSE is at most this radiance")
-        ->check(CLI::Range(1e-9, 1e9));
+        ->check(check_within(1e-9, 1e9));
     command->add_option("--width", options->width, "Image width; the height follows (default: the scene's)")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
     command->add_option("--depth", options->depth, "Most segments of a path (default: 50)")
@@ -247,7 +245,7 @@ void add_render_command(CLI::App& app, cluster::Ranks& ranks, int& status) {
                      "Keep the exact sums in this file, every so often and at the end; `merge` adds such files up")
         ->check(check_file_name);
     command->add_option("--every", options->checkpoint.every_s, "Seconds between checkpoints (default: 60)")
-        ->check(CLI::Range(0.0, 1e9));
+        ->check(check_within(0, 1e9));
     command->add_flag("--resume", options->checkpoint.is_resumed, "Go on from the checkpoint");
     command->add_option("--stats", options->stats, "Write all figures to this file, as JSON")->check(check_file_name);
     command
