@@ -324,7 +324,7 @@ RAYPOOL_INLINE auto lane(const V& v, int i) {
 /// so the target has room for one. (A register is compressed and then stored whole: a compressing store is slow.)
 template <class V, class T>
 RAYPOOL_INLINE void compress_store(T* target, const V& v, unsigned bits) {
-    static_assert(sizeof(V) == sizeof(T) * (Simd<V> ? sizeof(V) / sizeof(T) : 1));
+    static_assert(Simd<V> || sizeof(V) == sizeof(T));
     if constexpr (!Simd<V>) {
         if (bits != 0) *target = v;
     } else if constexpr (sizeof(T) == 4) {

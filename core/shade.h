@@ -200,7 +200,7 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
     if constexpr (needs.metal || needs.dielectric) {
         if (any(is_metal || is_glass)) {
             const Vec3<Real> mirrored = mirror_direction<Real>(ray.direction, point.normal);
-            Vec3<Real> direction = mirrored;
+            Vec3<Real> direction = mirrored;  // NOLINT(performance-unnecessary-copy-initialization): fuzz changes it
             if constexpr (needs.fuzz) {
                 if (any(is_rough)) {
                     direction = select<Real>(is_rough, fuzzy_direction<Real>(mirrored, row[Row::kParameter], on_sphere),

@@ -62,10 +62,10 @@ constexpr const char* to_string(Setting setting) {
 /// The setting that a word names, if it names one.
 template <HasWords Setting>
 constexpr std::optional<Setting> parse_setting(std::string_view word) {
-    constexpr auto& kWords = SettingWords<Setting>::kWords;
-    const auto found = std::find(kWords.begin(), kWords.end(), word);
-    if (found == kWords.end()) return std::nullopt;
-    return static_cast<Setting>(std::distance(kWords.begin(), found));
+    constexpr auto& words = SettingWords<Setting>::kWords;
+    const auto found = std::find(words.begin(), words.end(), word);
+    if (found == words.end()) return std::nullopt;
+    return static_cast<Setting>(std::distance(words.begin(), found));
 }
 
 }  // namespace raypool::wavefront

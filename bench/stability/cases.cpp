@@ -11,7 +11,7 @@ const Method& Case::method(const std::string& name) const {
 }
 
 const std::vector<Case>& all_cases() {
-    static const std::vector<Case> cases = [] {
+    static const std::vector<Case> kCases = [] {
         std::vector<Case> all;
         for (const auto& family :
              {sphere_cases(), leaving_cases(), box_cases(), motion_cases(), scattering_cases(), glass_cases(),
@@ -19,7 +19,7 @@ const std::vector<Case>& all_cases() {
             all.insert(all.end(), family.begin(), family.end());
         return all;
     }();
-    return cases;
+    return kCases;
 }
 
 const Case& find_case(const std::string& id) {

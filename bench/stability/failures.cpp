@@ -132,7 +132,7 @@ Image render(const Scene& scene, const RenderSettings& settings, const auto& ren
 }  // namespace
 
 const std::vector<Failure>& all_failures() {
-    static const std::vector<Failure> failures{
+    static const std::vector<Failure> kFailures{
         {"acne", "2a", "Acne: a least distance of 1e-3, 20 000 units from the origin",
          "The naive method forgets hits closer than 1e-3. This far out positions are two thousandths apart, so rays "
          "that "
@@ -159,7 +159,7 @@ const std::vector<Failure>& all_failures() {
          "takes "
          "the whole number below.",
          NaiveVariant::Truncation, checker_scene()}};
-    return failures;
+    return kFailures;
 }
 
 FailureImages render_failure(NaiveVariant variant, const Scene& scene, const RenderSettings& settings) {

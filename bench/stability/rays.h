@@ -54,7 +54,7 @@ template <class Test>
 double time_rays(std::int64_t calls, Test test) {
     constexpr int kPackets = 64;
     constexpr int kLanesOf = kLanes<Packet>;
-    static const std::vector<Ray<Packet>> packets = [] {
+    static const std::vector<Ray<Packet>> kPrepared = [] {
         RandomInputs random(77);
         std::vector<Ray<Packet>> all(kPackets);
         for (Ray<Packet>& packet : all)
@@ -70,7 +70,7 @@ double time_rays(std::int64_t calls, Test test) {
     }();
     Packet sum(0);
     for (std::int64_t i = 0; i < calls / kLanesOf; ++i) {
-        const Ray<Packet>& ray = packets[static_cast<std::size_t>(i % kPackets)];
+        const Ray<Packet>& ray = kPrepared[static_cast<std::size_t>(i % kPackets)];
         sum += min(test(ray.origin, ray.direction), Packet(1));
     }
     double total = 0;

@@ -49,7 +49,8 @@ double jitter_error(double width, std::int64_t samples) {
     const auto edge = static_cast<std::int64_t>(width);
     const Camera<Scalar> camera = make_camera<Scalar>(description, edge, edge);
     const RandomSeed seed = random_seed(0);
-    const auto x = static_cast<Scalar>(edge / 2);
+    const std::int64_t middle = edge / 2;
+    const auto x = static_cast<Scalar>(middle);
     Errors errors;
     for (std::uint32_t sample = 0; sample < static_cast<std::uint32_t>(samples); ++sample) {
         const Scalar jitter = random_block<Scalar>(0, sample, random_block_id::kFilm, seed)[0];
@@ -87,15 +88,15 @@ double split_naive(double splits, std::int64_t) {
     return static_cast<double>(naive::breadth_first_records(kBatch, static_cast<int>(splits))) / kBatch;
 }
 double split_ours(double splits, std::int64_t) {
-    static const CompiledScene<float> scene = glass_stack();
+    static const CompiledScene<float> kScene = glass_stack();
     wavefront::PoolSettings pool;
     pool.capacity = kBatch;
     RenderSettings settings;
     settings.end_sample = 4;
     settings.split_depth = static_cast<int>(splits);
     settings.log_rounds = true;
-    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(4, scene.max_radiance));
-    const RenderReport report = wavefront::WavefrontEngine(pool).render(scene, settings, framebuffer);
+    Framebuffer framebuffer(kScene.width, kScene.height, FixedPoint::make(4, kScene.max_radiance));
+    const RenderReport report = wavefront::WavefrontEngine(pool).render(kScene, settings, framebuffer);
     std::int64_t most = 0;
     for (const RoundWork& round : report.rounds) most = std::max(most, std::max(round.records_in, round.records_out));
     return share(most, kBatch);
