@@ -88,17 +88,6 @@ TEST(AdaptivePlan, StopsAtTheMostSamples) {
     EXPECT_GT(plan.rmse(), 1e-6);
 }
 
-TEST(AdaptivePlan, TellsTheErrorOfARenderThatIsStopped) {
-    AdaptivePlan plan(1e-6, 1000, kWidth, kHeight);
-    Samples samples(1000);
-    for (const SamplePass& pass : plan.next(samples.framebuffer))
-        for (const std::uint32_t pixel : pass.pixels) samples.add(pixel, pass.end - pass.first, 0.5, 0.25);
-    plan.estimate(samples.framebuffer);
-    EXPECT_EQ(plan.rmse(), estimate_error(samples.framebuffer, plan.sample_counts()).rmse);
-    EXPECT_GT(plan.rmse(), 0.01);
-    EXPECT_EQ(plan.rounds(), 1);
-}
-
 TEST(AdaptivePlan, GivesEveryPixelItsFirstSamplesAndNoMoreWhereNothingIsNoisy) {
     AdaptivePlan plan(1e-3, 1000, kWidth, kHeight);
     Samples samples(1000);

@@ -77,6 +77,18 @@ INSTANTIATE_TEST_SUITE_P(Scenes, AdaptiveImage,
                                          AdaptiveCase{"cornell", 0.15}, AdaptiveCase{"glass_stack", 0.04}),
                          [](const auto& param) { return std::string(param.param.scene); });
 
+TEST(AdaptiveRender, ThatIsStoppedTellsTheErrorOfWhatItHas) {
+    const CompiledScene<float> scene = compile<float>(small_scene("half_sky", 16));
+    RenderSettings settings;
+    settings.end_sample = 80;
+    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(80, scene.max_radiance), Moments::Second);
+    AdaptivePlan plan(1e-6, 80, scene.width, scene.height);
+    render_adaptively(recursive::RecursiveEngine(), scene, settings, plan, framebuffer, [] { return false; });
+    EXPECT_EQ(plan.rounds(), 1);
+    EXPECT_GT(plan.rmse(), 0);
+    EXPECT_EQ(plan.rmse(), estimate_error(framebuffer, plan.sample_counts()).rmse);
+}
+
 TEST(AdaptiveEquivalence, DoublePrecisionAgreesToo) {
     const CompiledScene<double> scene = compile<double>(small_scene("paper", 16));
     RenderSettings settings;
