@@ -132,7 +132,8 @@ class Render(CommandTest):
     def test_shows_progress_on_a_terminal_only(self):
         terminal, other_end = pty.openpty()
         process = subprocess.Popen([self.command, "render", "paper", "--width", "200", "--spp", "60", "--threads", "1"],
-                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=other_end)
+                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=other_end,
+                                   env={**os.environ, "TERM": "xterm"})
         os.close(other_end)
         shown = b""
         try:
@@ -142,7 +143,7 @@ class Render(CommandTest):
             pass
         os.close(terminal)
         self.assertEqual(process.wait(), 0)
-        self.assertRegex(shown.decode(), r"\r\[=* *\] +\d+ %  \d+\.\d\d M paths/s  (\d+:\d\d|-:--) left ")
+        self.assertRegex(shown.decode(), r"\r\[=* *\] +\d+ %  \d+\.\d\d M paths/s  (\d+:\d\d|-:--) left\x1b\[K")
         self.assertTrue(shown.endswith(b"\r\x1b[K"), "the bar is gone at the end")
 
     def test_has_one_hash_whatever_the_engine_and_the_loop(self):
