@@ -48,9 +48,13 @@ std::string markdown(const json& header, const json& rows) {
 }
 
 std::string machine_line(const json& environment) {
-    return fmt::format("{}, {} cores, {}, commit {}", environment.at("cpu").get_ref<const std::string&>(),
+    // A run may be older than the record of what its code could use.
+    const json simd = environment.value("simd", json());
+    const std::string widest =
+        simd.is_object() ? fmt::format(" and code for {}", simd.at("instruction_sets").back().get<std::string>()) : "";
+    return fmt::format("{}, {} cores, {}{}, commit {}", environment.at("cpu").get_ref<const std::string&>(),
                        environment.at("cores").get<int>(), environment.at("compiler").get_ref<const std::string&>(),
-                       environment.at("commit").get_ref<const std::string&>());
+                       widest, environment.at("commit").get_ref<const std::string&>());
 }
 
 std::string summary_page(const json& run) {
