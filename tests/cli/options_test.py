@@ -92,6 +92,12 @@ class Schedule(CommandTest):
             self.assertEqual(stats["settings"]["schedule"], understood)
             self.assertEqual(stats["environment"]["openmp"]["OMP_SCHEDULE"], text)
 
+    def test_stands_on_record_among_all_variables_of_openmp(self):
+        environment = {"OMP_NUM_THREADS": "2,3", "OMP_PLACES": "{0},{1}", "OMP_DYNAMIC": "false", "OMP_SCHEDULE": "static, 2"}
+        stats = self.stats("--spp", 1, environment=environment)
+        self.assertEqual(stats["environment"]["openmp"], environment)
+        self.assertEqual((stats["settings"]["threads"], stats["settings"]["schedule"]), (2, "static,2"))
+
     def test_is_asked_of_the_environment_only_where_it_matters(self):
         self.stats("--spp", 1, "--schedule", "static,2", environment={"OMP_SCHEDULE": "dynamic,-1"})
         self.stats("--spp", 1, *SHARED, environment={"OMP_SCHEDULE": "dynamic,-1"})
