@@ -39,25 +39,8 @@ struct AdviseCommand {
     bool is_quiet = false;
 };
 
-/// As a shell reads it, and as a terminal can show it.
-std::string quoted(const std::string& text) {
-    constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
-    if (text.find_first_not_of(kPlain) == std::string::npos) return text;
-    if (printable(text) != text) {
-        std::string escaped;
-        for (const char c : text)
-            escaped += kPlain.find(c) != std::string_view::npos
-                           ? std::string(1, c)
-                           : fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
-        return "$'" + escaped + "'";
-    }
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? "'\\''" : std::string(1, c);
-    return result + "'";
-}
-
 std::string render_line(const AdviseCommand& command, const Offer& offer, int threads) {
-    return fmt::format("raypool render {}{} --spp {} {} --threads {}", quoted(command.scene),
+    return fmt::format("raypool render {}{} --spp {} {} --threads {}", shell_word(command.scene),
                        command.width == 0 ? "" : fmt::format(" --width {}", command.width), offer.spp,
                        render_flags(offer.pilot.configuration), threads);
 }

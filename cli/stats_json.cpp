@@ -15,6 +15,10 @@ bool loops_over_image(const RenderRecord& record) {
     return record.engine != "wavefront" || wavefront::loops_over_image(record.pool);
 }
 
+bool misses_target(const RenderRecord& record) {
+    return record.target_error > 0 && !record.adaptive.is_reached;
+}
+
 json settings_json(const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
     json result{{"scene", record.scene_name},
@@ -93,7 +97,7 @@ json stats_json(const RenderRecord& record) {
             std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
         stats["adaptive"] = {
             {"rmse_estimate", record.adaptive.rmse},
-            {"reached", record.adaptive.is_reached},
+            {"reached", !misses_target(record)},
             {"rounds", record.adaptive.rounds},
             {"samples_per_pixel", {{"least", *least}, {"mean", record.adaptive.mean_samples()}, {"most", *most}}}};
     }

@@ -39,6 +39,9 @@ struct RenderRecord {
 /// Whether the engine hands out parts of the image, so that schedule and grain have an effect.
 bool loops_over_image(const RenderRecord& record);
 
+/// Whether an adaptive render ended without the error that was asked for, which is not what its user wanted.
+bool misses_target(const RenderRecord& record);
+
 /// What has an effect.
 nlohmann::json settings_json(const RenderRecord& record);
 nlohmann::json stats_json(const RenderRecord& record);

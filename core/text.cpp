@@ -77,4 +77,21 @@ std::string printable(std::string_view text) {
     return result;
 }
 
+std::string shell_word(std::string_view text) {
+    constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
+    const bool is_printable = printable(text) == text;
+    std::string result(is_printable ? "'" : "$'");
+    for (const char c : text) {
+        if (is_printable) {
+            result += c == '\'' ? "'\\''" : std::string(1, c);
+        } else if (kPlain.find(c) != std::string_view::npos) {
+            result += c;
+        } else {
+            fmt::format_to(std::back_inserter(result), "\\x{:02x}", static_cast<std::uint8_t>(c));
+        }
+    }
+    const bool is_plain = !text.empty() && text.find_first_not_of(kPlain) == std::string_view::npos;
+    return is_plain ? std::string(text) : result + "'";
+}
+
 }  // namespace raypool

@@ -17,4 +17,8 @@ std::string valid_utf8(std::string_view text);
 /// part of a valid character (\xff). All else, a backslash too, comes back as it is.
 std::string printable(std::string_view text);
 
+/// The text as one word of a shell's command, which is printable too: as it is where that is plain, else quoted, as
+/// $'bad\xff' (bash, zsh, POSIX 2024) where it holds what printable() escapes.
+std::string shell_word(std::string_view text);
+
 }  // namespace raypool

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
+
 namespace raypool::studies {
 
 using nlohmann::json;
@@ -83,7 +85,7 @@ std::string summary_page(const json& run) {
     for (const char* key : {"width", "spp", "depth", "threads", "repeats", "seed"})
         if (options.at(key) != 0) command += fmt::format(" --{} {}", key, options.at(key).dump());
     if (options.contains("scene_given") || text_of(options, "scene") != "paper")
-        command += " --scene " + text_of(options, "scene");
+        command += " --scene " + shell_word(text_of(options, "scene"));
     page += fmt::format("\n{}. Finished {}; the host took {:.1f} % of the processor time for others.\n",
                         machine_line(run.at("environment")), text_of(run, "finished"),
                         100 * run.at("stolen").get<double>());

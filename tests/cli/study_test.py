@@ -96,6 +96,13 @@ class StudyTest(CommandTest):
         self.run_well("study", "schedules", *TINY, "--quiet")
         self.assert_refused("study", "schedules", *TINY, "--seed", "1", named=["out/schedules", "options", "--fresh"])
 
+    def test_scene_with_a_name_that_is_no_utf8_can_be_gone_on_with(self):
+        scene = os.fsdecode(b"bad\xff\x1b.json")
+        (self.folder / scene).write_bytes((self.folder / "scene.json").read_bytes())
+        for _ in range(2):
+            self.run_well("study", "schedules", *TINY, "--threads", 1, "--scene", scene, "--out", scene[:-5], "--quiet")
+            self.check_folder(self.folder / scene[:-5])
+
     def test_bad_input_is_refused(self):
         self.assert_refused("study", "nothing", named=["nothing", "schedules"])
         self.assert_refused("study", "schedules", "--scene", "absent.json", named="absent.json")

@@ -60,6 +60,15 @@ TEST(Printable, TextIsOneLineOfUtf8WhateverTheBytes) {
     for (const char c : shown) EXPECT_TRUE(static_cast<unsigned char>(c) >= 0x20 && c != 0x7F);
 }
 
+TEST(ShellWord, IsPlainWhereItMayBeAndQuotedElsewhere) {
+    EXPECT_EQ(shell_word("scenes/a_1.json"), "scenes/a_1.json");
+    EXPECT_EQ(shell_word("my scene.json"), "'my scene.json'");
+    EXPECT_EQ(shell_word("it's $HOME"), "'it'\\''s $HOME'");
+    EXPECT_EQ(shell_word("é"), "'é'");
+    EXPECT_EQ(shell_word(""), "''");
+    EXPECT_EQ(shell_word("bad\xff's\n"), "$'bad\\xff\\x27s\\x0a'");
+}
+
 TEST(JsonText, NeverThrowsForWhatStringsAndKeysHold) {
     for (const std::string& text : kInvalid) {
         const std::string written = json_text({{text, text}});
