@@ -117,6 +117,7 @@ nlohmann::json advice_json(const Advice& advice, const AdviseCommand& command, i
 void advise(const AdviseCommand& command) {
     if (command.target_error.has_value() == command.target_time.has_value())
         throw InputError("advise: needs one of --target-error and --target-time");
+    check_distinct({{"--json", command.json}}, {{"the scene", command.scene}});
     if (!command.json.empty()) check_writable(command.json);
     Scene scene = load_scene(command.scene);
     if (command.width != 0) set_width(scene, command.width);

@@ -173,6 +173,7 @@ nlohmann::json table_json(const std::vector<Contender>& list) {
 int compare(const CompareOptions& options) {
     if (kIsDebugBuild && !options.only_check)
         throw InputError("compare: a debug build does not time; build in Release, or add --check");
+    check_distinct({{"--json", options.json}}, {{"the scene", options.scene}});
     if (!options.json.empty()) check_writable(options.json);
     Scene scene = load_scene(options.scene);
     if (options.width != 0) set_width(scene, options.width);

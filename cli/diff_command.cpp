@@ -29,6 +29,7 @@ void print_bias(const TileBias& bias) {
 }
 
 int diff(const DiffOptions& options) {
+    check_distinct({{"--output", options.output}}, {{"A", options.a}, {"B", options.b}});
     if (!options.output.empty()) {
         image_format(options.output);
         check_writable(options.output);

@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -123,15 +124,22 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
     write_image(options.cost_image, is_picture ? heat_map(cost) : cost.image(), attributes);
 }
 
-/// What only one rank can do is for rank 0; what is not gathered from ranks is refused.
-void make_ready(RenderOptions& options, const cluster::Ranks& ranks) {
+/// What only one rank can do is for rank 0; what is not gathered from ranks is refused. Returns the checkpoint's lock.
+[[nodiscard]] std::unique_ptr<FileLock> make_ready(RenderOptions& options, const cluster::Ranks& ranks) {
+    if (ranks.separate_count() > 1 && options.samples.empty())
+        throw InputError(fmt::format(
+            "{} tasks were started that know nothing of each other, and each would render the whole image: use mpirun "
+            "or "
+            "srun --mpi=pmix, or give each its --samples, or unset SLURM_STEP_NUM_TASKS where each renders its own",
+            ranks.separate_count()));
     if (ranks.count() > 1)
         for (const auto& [flag, file] : {std::pair{"--trace", options.trace}, {"--cost-image", options.cost_image}})
             if (!file.empty()) throw InputError(fmt::format("{}: is not made by several ranks", flag));
-    if (ranks.is_first()) return check(options.checkpoint);
+    if (ranks.is_first()) return claim(options.checkpoint);
     options.output.clear();
     options.stats.clear();
     options.is_quiet = true;
+    return nullptr;
 }
 
 int render(RenderOptions& options, cluster::Ranks& ranks) {
@@ -140,8 +148,9 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
                     {"--checkpoint", options.checkpoint.file},
                     {"--stats", options.stats},
                     {"--trace", options.trace},
-                    {"--cost-image", options.cost_image}});
-    make_ready(options, ranks);
+                    {"--cost-image", options.cost_image}},
+                   {{"the scene", options.scene}});
+    const std::unique_ptr<FileLock> lock = make_ready(options, ranks);
     RenderRecord record;
     record.settings = render_settings(options);
     record.spp = options.spp;
@@ -182,15 +191,24 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     Checkpoint checkpoint(options.checkpoint, ranks);
     const Image image = render_image(scene, options.checkpoint, options.is_quiet, checkpoint, ranks, record);
     watch.lap();
-    if (!options.output.empty()) write_image(options.output, image, image_attributes(record));
+    std::exception_ptr failure = checkpoint.failure();  // what cannot be written costs nothing else
+    const auto attempt = [&failure](const std::string& file, const auto& write) {
+        try {
+            if (!file.empty()) write(file);
+        } catch (...) {
+            if (!failure) failure = std::current_exception();
+        }
+    };
+    attempt(options.output, [&](const auto& file) { write_image(file, image, image_attributes(record)); });
     record.write_s = watch.seconds();
     record.total_s = total.seconds();
-    if (!options.stats.empty()) write_json(options.stats, stats_json(record));
-    if (!options.cost_image.empty()) write_cost_image(options, cost, record);
-    if (!options.trace.empty()) write_trace(options.trace, trace, image_attributes(record));
+    attempt(options.stats, [&](const auto& file) { write_json(file, stats_json(record)); });
+    attempt(options.cost_image, [&](const auto&) { write_cost_image(options, cost, record); });
+    attempt(options.trace, [&](const auto& file) { write_trace(file, trace, image_attributes(record)); });
+    if (failure) std::rethrow_exception(failure);
 
     const int signal = checkpoint.stopped_by();
-    if (signal != 0 && ranks.is_first())
+    if (signal != 0 && ranks.is_first() && !Checkpoint::has_said_so())
         print(stderr,
               "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
               options.checkpoint.file, record.samples_done);

@@ -30,13 +30,12 @@ std::unique_ptr<Engine> make_engine(const RenderRecord& record, cluster::Ranks& 
     return ranks.count() == 1 ? std::move(own) : std::make_unique<cluster::RankEngine>(std::move(own), ranks);
 }
 
-/// All that fixes the image. Threads, engine and pool do not.
+/// All that fixes the samples. Threads, engine and pool do not, nor does how many there are.
 ImageKey image_key(const Scene& scene, const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
     return {{"scene", scene_hash(scene)},
             {"width", fmt::to_string(scene.width)},
             {"height", fmt::to_string(scene.height)},
-            {"spp", fmt::to_string(record.spp)},
             {"depth", fmt::to_string(settings.depth)},
             {"split_depth", fmt::to_string(settings.split_depth)},
             {"seed", fmt::to_string(settings.seed)},
@@ -95,6 +94,7 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
 
     const bool is_adaptive = record.target_error > 0;
     RenderSums sums{image_key(scene, record),
+                    record.spp,
                     {},
                     {},
                     0,
@@ -117,7 +117,7 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
         record.ranks = cluster::gather(ranks, record.report);
         record.report = cluster::joined(record.ranks);
     }
-    checkpoint.write(sums);
+    checkpoint.finish(sums);
     record.settings.progress = nullptr;
     record.hash = sums.framebuffer.hash();
     record.samples_done = is_adaptive ? std::llround(record.adaptive.mean_samples()) : sums.sample_count();

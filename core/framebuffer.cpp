@@ -19,7 +19,7 @@ constexpr double kLeastMaxRadiance = 0x1p-20;  ///< a black scene still has a st
 
 FixedPoint FixedPoint::make(std::int64_t spp, double max_radiance) {
     const int limit_bits = ceil_log2(std::max(max_radiance, kLeastMaxRadiance)) + 1;
-    const int spp_bits = ceil_log2(static_cast<double>(std::max<std::int64_t>(spp, 1)));
+    const int spp_bits = ceil_log2(static_cast<double>(std::max(spp, kExtensibleSamples)));
     // Squares: three channels, each below 2^(2 limit_bits), times spp, stay below 2^62.
     return {62 - limit_bits - spp_bits, std::ldexp(1.0, limit_bits), 60 - 2 * limit_bits - spp_bits};
 }
