@@ -27,6 +27,19 @@ void print_work(const RenderSettings& settings, const RenderReport& report) {
                    static_cast<double>(report.total(&ThreadWork::primitive_tests)) / segments);
 }
 
+/// What is known of the error of an adaptive render. An estimate is not printed where there is none.
+void print_error(const RenderRecord& record) {
+    const AdaptiveReport& adaptive = record.adaptive;
+    const auto [least, most] = std::minmax_element(adaptive.sample_counts.begin(), adaptive.sample_counts.end());
+    const bool has_estimate = adaptive.rmse > 0;
+    fmt::print(
+        "RMSE {}at most {:.4g} (asked for {:.4g}: {}) after {} rounds; {} to {} samples a pixel, {:.1f} on average\n",
+        has_estimate ? fmt::format("estimated {:.4g}, ", adaptive.rmse) : "", adaptive.most_rmse, record.target_error,
+        to_string(adaptive.status), adaptive.rounds, *least, *most, adaptive.mean_samples());
+    fmt::print("{} pixels without variance; light that no sample has found adds at most {:.3g}\n", adaptive.flat_pixels,
+               adaptive.unseen_rmse);
+}
+
 }  // namespace
 
 void print_summary(const RenderRecord& record) {
@@ -40,14 +53,7 @@ void print_summary(const RenderRecord& record) {
     fmt::print("{} engine: {}{} thread{}, grain {}, schedule {}\n", record.engine, ranks, settings.threads,
                settings.threads == 1 ? "" : "s", to_string(settings.grain), to_string(settings.schedule));
     print_work(settings, report);
-    if (record.target_error > 0) {
-        const auto [least, most] =
-            std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
-        fmt::print(
-            "estimated RMSE {:.4g} (asked for {:.4g}) after {} rounds; {} to {} samples a pixel, {:.1f} on average\n",
-            record.adaptive.rmse, record.target_error, record.adaptive.rounds, *least, *most,
-            record.adaptive.mean_samples());
-    }
+    if (record.target_error > 0) print_error(record);
     if (report.pool_bytes > 0)
         fmt::print("ray record of {} bytes; pools at most {:.2f} MB\n", report.record_bytes,
                    static_cast<double>(report.pool_bytes) / (1024 * 1024));

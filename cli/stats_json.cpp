@@ -87,7 +87,11 @@ json stats_json(const RenderRecord& record) {
         const auto [least, most] =
             std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
         stats["adaptive"] = {
+            {"target", to_string(record.adaptive.status)},
             {"rmse_estimate", record.adaptive.rmse},
+            {"rmse_most", record.adaptive.most_rmse},
+            {"rmse_of_unseen_light", record.adaptive.unseen_rmse},
+            {"pixels_without_variance", record.adaptive.flat_pixels},
             {"rounds", record.adaptive.rounds},
             {"samples_per_pixel", {{"least", *least}, {"mean", record.adaptive.mean_samples()}, {"most", *most}}}};
     }

@@ -90,15 +90,15 @@ TEST_F(SumsFile, WithAnyBitFlippedIsRefused) {
 TEST_F(SumsFile, OfALaterVersionIsRefusedByItsVersion) {
     write_sums(path_, some_sums(Moments::First));
     std::string text = bytes_of(path_);
-    const std::size_t at = text.find("\"version\":1");
+    const std::size_t at = text.find("\"version\":2");
     ASSERT_NE(at, std::string::npos);
-    text.replace(at, 11, "\"version\":2");
+    text.replace(at, 11, "\"version\":3");
     write_bytes(path_, text);
     try {
         static_cast<void>(read_sums(path_));
         FAIL();
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("version 2"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("version 3"), std::string::npos) << error.what();
     }
 }
 
@@ -117,7 +117,7 @@ std::string refusal_of(std::string text) {
 std::string changed(const std::string& part, const std::string& instead) {
     const std::string header =
         R"({"fraction_bits":40,"format":"raypool sums","has_counts":false,"has_squares":false,"height":1,"key":[["spp","40"]],)"
-        R"("limit_bits":2,"ranges":[[0,5],[7,40]],"rounds":0,"square_bits":30,"version":1,"width":1})";
+        R"("limit_bits":2,"ranges":[[0,5],[7,40]],"rounds":0,"version":2,"width":1})";
     const std::size_t at = header.find(part);
     EXPECT_NE(at, std::string::npos) << part;
     return std::string(header).replace(at, part.size(), instead) + "\n" + std::string(24, '\0');
@@ -133,7 +133,7 @@ TEST(HostileSums, AreRefusedWhereverTheirHeaderIsNotAsItIsWritten) {
                                                                     {"\"height\":1", "\"height\":4294967297"},
                                                                     {"\"rounds\":0", "\"rounds\":1e300"},
                                                                     {"\"rounds\":0", "\"rounds\":-1"},
-                                                                    {"\"version\":1", "\"version\":\"1\""},
+                                                                    {"\"version\":2", "\"version\":\"2\""},
                                                                     {"[0,5],[7,40]", "[0,5],[5,40]"},
                                                                     {"[0,5],[7,40]", "[7,40],[0,5]"},
                                                                     {"[0,5],[7,40]", "[0,5],[7]"},
@@ -150,7 +150,7 @@ TEST(HostileSums, AreRefusedWhereverTheirHeaderIsNotAsItIsWritten) {
 
 TEST(HostileSums, NestedWithoutEndAreRefusedWithoutDescending) {
     const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
-    EXPECT_NE(refusal_of(changed("\"version\":1", "\"version\":" + deep)), "");
+    EXPECT_NE(refusal_of(changed("\"version\":2", "\"version\":" + deep)), "");
     EXPECT_NE(refusal_of(changed("\"raypool sums\"", deep)), "");
 }
 
