@@ -22,14 +22,14 @@ constexpr int kSeeds = 8;
 constexpr std::int64_t kPilotSpp = 16;  ///< more where light is rare, fewer where paths are long
 /// What all pilots of single changes may take, in the seconds of AdviseOptions::cost, and the number of images that
 /// they render, in units of the first.
-constexpr double kSecondsOfPilots = 12;
-constexpr double kPilotsInUnits = 20;
+constexpr double kSecondsOfPilots = 30;
+constexpr double kPilotsInUnits = 6;
 constexpr std::int64_t kPilotPixels = 6000;
 constexpr std::size_t kOffers = 3;
 /// What the closer look at an offer may take, in the seconds of AdviseOptions::cost.
 constexpr double kSecondsPerOffer = 1.5;
 /// And where light is rare.
-constexpr double kMostSecondsPerOffer = 12;
+constexpr double kMostSecondsPerOffer = 8;
 constexpr double kTimeMargin = 0.9;  ///< part of a budget of time that is planned
 constexpr std::int64_t kMostSpp = std::numeric_limits<std::int32_t>::max();
 constexpr int kDepths[] = {3, 5, 8, 12, 20, 50, 200};
@@ -61,14 +61,25 @@ Configuration with(Configuration c, const std::function<void(Configuration&)>& c
     return c;
 }
 
-std::vector<Change> changes(bool has_glass) {
-    const Configuration in_float = with(kTrusted, [](auto& c) { c.precision = Precision::Float; });
-    std::vector<Change> all{{"float instead of double", kTrusted, in_float, true},
+/// The trusted configuration for a scene: as deep as it takes until nothing is left of a path's throughput, and not so
+/// deep as to follow paths in a closed room on and on.
+Configuration trusted_for(const CompiledScene<double>& scene) {
+    constexpr double kNothing = 1e-12;
+    Configuration trusted = kTrusted;
+    const double deepest = std::ceil(std::log(kNothing) / std::log(std::min(scene.max_albedo, 1 - 1e-9)));
+    trusted.depth = static_cast<std::int32_t>(std::clamp<double>(deepest, kDepths[0], kDeep));
+    return trusted;
+}
+
+std::vector<Change> changes(bool has_glass, const Configuration& trusted) {
+    const Configuration in_float = with(trusted, [](auto& c) { c.precision = Precision::Float; });
+    std::vector<Change> all{{"float instead of double", trusted, in_float, true},
                             {"recursion instead of the pool", in_float,
                              with(in_float, [](auto& c) { c.engine = EngineKind::Recursive; }), false}};
     for (const int depth : kDepths)
-        all.push_back({fmt::format("depth {} instead of {}", depth, kDeep), in_float,
-                       with(in_float, [=](auto& c) { c.depth = depth; }), true});
+        if (depth < trusted.depth)
+            all.push_back({fmt::format("depth {} instead of {}", depth, trusted.depth), in_float,
+                           with(in_float, [=](auto& c) { c.depth = depth; }), true});
     all.push_back({"Sobol points instead of independent ones", in_float,
                    with(in_float, [](auto& c) { c.sampler = Sampler::Sobol; }), false});
     all.push_back({"roulette", in_float, with(in_float, [](auto& c) { c.roulette = true; }), false});
@@ -133,15 +144,14 @@ class Piloting {
 
 /// The trusted configuration, with as many samples as make its noise known, and no more than time allows for all
 /// pilots. Its images and nothing else of it are in the given vector.
-Pilot first_pilot(const Piloting& piloting, std::vector<Values>* images) {
-    Pilot pilot = piloting.run(kTrusted, 1);
-    const double per_sample = kPilotsInUnits * kSeeds * pilot.seconds_of(1);
-    const auto affordable = static_cast<std::int64_t>(
-        std::clamp(kSecondsOfPilots / std::max(per_sample, 1e-9), 1.0, static_cast<double>(kPilotSpp << 16U)));
-    std::int64_t spp =
-        std::min(kPilotSpp, static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(affordable))));
-    pilot = piloting.run(kTrusted, spp, images);
-    while (!pilot.is_noise_known() && 4 * spp <= affordable) pilot = piloting.run(kTrusted, spp *= 4, images);
+Pilot first_pilot(const Piloting& piloting, const Configuration& trusted, std::vector<Values>* images) {
+    std::int64_t spp = 1;
+    Pilot pilot = piloting.run(trusted, spp, images);
+    const auto is_affordable = [&](std::int64_t more) {
+        return kPilotsInUnits * kSeeds * pilot.seconds_of(static_cast<double>(more)) <= kSecondsOfPilots;
+    };
+    while ((spp < kPilotSpp || !pilot.is_noise_known()) && is_affordable(2 * spp))
+        pilot = piloting.run(trusted, spp *= 2, images);
     return pilot;
 }
 
@@ -261,19 +271,20 @@ std::optional<std::int64_t> samples_for(const Pilot& pilot, const Target& target
 }
 
 std::int64_t most_pilots() {
-    return 10 + static_cast<std::int64_t>(changes(true).size() + 8 * kOffers);
+    return 10 + static_cast<std::int64_t>(changes(true, kTrusted).size() + 8 * kOffers);
 }
 
 Advice advise(const Scene& scene, const Target& target, const AdviseOptions& options) {
     const Scene small = pilot_scene(scene);
     const SceneInBoth pilot_tables(small);
     const Piloting piloting(pilot_tables, options);
+    const Configuration deep = trusted_for(pilot_tables.in_double);
     const SceneNeeds& needs = pilot_tables.in_float.needs;
     Advice advice{feature_names(needs), scene.width, scene.height, small.width, small.height, kSeeds, {}, {}};
 
     // One change at a time.
     std::vector<Values> trusted_images;
-    const Pilot trusted = first_pilot(piloting, &trusted_images);
+    const Pilot trusted = first_pilot(piloting, deep, &trusted_images);
     const std::int64_t pilot_spp = trusted.spp;
     if (!trusted.is_noise_known())
         throw NothingPromised(
@@ -281,7 +292,7 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
                         "the brightest "
                         "has a radiance of {:g}",
                         piloting.sample_count(pilot_spp), pilot_tables.in_double.max_radiance));
-    const std::vector<Change> all = changes(needs.dielectric);
+    const std::vector<Change> all = changes(needs.dielectric, deep);
     std::vector<Pilot> pilots;
     for (const Change& change : all) {
         std::vector<Values> images;
@@ -290,11 +301,11 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
             // cppcheck-suppress containerOutOfBounds ; run() has filled it
             for (std::size_t k = 0; k < images[i].size(); ++k) images[i][k] -= trusted_images[i][k];
         pilot.bias = mean_squared_expectation(images);
-        if (change.after.depth != kDeep)
+        if (change.after.depth != deep.depth)
             pilot.unseen_bias =
                 unseen_bias(images, piloting.sample_count(pilot_spp), pilot_tables.in_double.max_radiance,
                             pilot_tables.in_double.truncation_bound(change.after.depth));
-        const Pilot& before = change.before == kTrusted ? trusted : pilots.front();
+        const Pilot& before = change.before == deep ? trusted : pilots.front();
         advice.simplifications.push_back({change.text, pilot.bias, pilot.unseen_bias,
                                           pilot.seconds_of(1) / before.seconds_of(1),
                                           mean(before.mse) == 0 ? 1 : pilot.noise(1) / before.noise(1)});
@@ -320,7 +331,7 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
                 if (after.sampler != Sampler::Independent) c.sampler = after.sampler;
                 if (after.roulette) c.roulette = true;
                 if (after.split_depth != 0) c.split_depth = after.split_depth;
-                if (after.depth != kDeep) c.depth = after.depth;
+                if (after.depth != deep.depth) c.depth = after.depth;
                 if (all[i].has_bias) {
                     combined.bias = pilots[i].bias;
                     combined.unseen_bias = pilots[i].unseen_bias;
@@ -338,7 +349,7 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
     combine_all([](const Configuration& c) { return c.sampler != Sampler::Independent; });
     combine_all([](const Configuration& c) { return c.roulette; });
     combine_all([](const Configuration& c) { return c.split_depth != 0; });
-    combine_all([](const Configuration& c) { return c.depth != kDeep; });
+    combine_all([&](const Configuration& c) { return c.depth != deep.depth; });
 
     // A closer look at the best, at the size that is asked for.
     std::vector<Offer> foretold;
@@ -361,8 +372,8 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
         std::int64_t spp = 1;
         while (2 * spp <= promising.spp && 2 * static_cast<double>(spp) * per_sample <= kSecondsPerOffer) spp *= 2;
         Pilot pilot = closer.run(promising.pilot.configuration, spp);
-        while (!pilot.is_noise_known() && 4 * static_cast<double>(spp) * per_sample <= kMostSecondsPerOffer)
-            pilot = closer.run(promising.pilot.configuration, spp *= 4);
+        while (!pilot.is_noise_known() && 2 * static_cast<double>(spp) * per_sample <= kMostSecondsPerOffer)
+            pilot = closer.run(promising.pilot.configuration, spp *= 2);
         is_any_known = is_any_known || pilot.is_noise_known();
         if (!pilot.is_noise_known()) continue;
         pilot.bias = promising.pilot.bias;
