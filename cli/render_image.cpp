@@ -52,14 +52,15 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
     if (record.target_error > 0) {
         std::vector<std::int32_t> counts = sums.sample_counts;
         if (counts.empty()) counts.resize(static_cast<std::size_t>(scene.pixel_count()));
-        AdaptivePlan plan(record.target_error, record.settings.end_sample, std::move(counts), sums.rounds);
+        AdaptivePlan plan({record.target_error, scene.max_radiance, record.settings.end_sample}, std::move(counts),
+                          sums.rounds);
         const auto keep = [&] {
             sums.sample_counts = plan.sample_counts();
             sums.rounds = plan.rounds();
             return checkpoint.keep(sums);
         };
         RenderReport report = render_adaptively(engine, scene, record.settings, plan, sums.framebuffer, keep);
-        adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds(), plan.is_reached()};
+        adaptive = plan.report();
         return report;
     }
     RenderReport report;

@@ -51,7 +51,6 @@ json header_of(const RenderSums& sums) {
             {"width", framebuffer.width()},
             {"height", framebuffer.height()},
             {"fraction_bits", fixed.fraction_bits},
-            {"square_bits", fixed.square_bits},
             {"limit_bits", std::ilogb(fixed.limit)},
             {"has_squares", framebuffer.has_squares()},
             {"has_counts", !sums.sample_counts.empty()}};
@@ -119,13 +118,12 @@ RenderSums parsed(const json& header, std::string_view payload) {
     const bool has_squares = header.at("has_squares").get<bool>();
     const bool has_counts = header.at("has_counts").get<bool>();
     const auto pixels = static_cast<std::size_t>(width * height);
-    const std::size_t bytes = pixels * ((has_squares ? 4 : 3) * sizeof(std::int64_t) + (has_counts ? 4 : 0));
+    const std::size_t bytes = pixels * ((has_squares ? 5 : 3) * sizeof(std::int64_t) + (has_counts ? 4 : 0));
     if (payload.size() != bytes)
         throw InputError(fmt::format("{} bytes of sums in place of {}", payload.size(), bytes));
 
     const FixedPoint fixed{static_cast<int>(within("fraction_bits", -1100, 1100)),
-                           std::ldexp(1.0, static_cast<int>(within("limit_bits", -1000, 1000))),
-                           static_cast<int>(within("square_bits", -2200, 2200))};
+                           std::ldexp(1.0, static_cast<int>(within("limit_bits", -1000, 1000)))};
     RenderSums sums{{},
                     within("spp", 1, std::numeric_limits<std::int32_t>::max()),
                     {},

@@ -122,7 +122,7 @@ std::string refusal_of(std::string text) {
 std::string changed(const std::string& part, const std::string& instead) {
     const std::string header =
         R"({"fraction_bits":40,"format":"raypool sums","has_counts":false,"has_squares":false,"height":1,"key":[["seed","40"]],)"
-        R"("limit_bits":2,"ranges":[[0,5],[7,40]],"rounds":0,"spp":40,"square_bits":30,"version":2,"width":1})";
+        R"("limit_bits":2,"ranges":[[0,5],[7,40]],"rounds":0,"spp":40,"version":2,"width":1})";
     const std::size_t at = header.find(part);
     EXPECT_NE(at, std::string::npos) << part;
     return std::string(header).replace(at, part.size(), instead) + "\n" + std::string(24, '\0');
