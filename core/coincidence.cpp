@@ -18,6 +18,11 @@ namespace {
 template <class Scalar>
 constexpr double kRoundoff = 0.5 * static_cast<double>(std::numeric_limits<Scalar>::epsilon());
 
+/// How exactly a shape is described, as a part of its coordinates: they are in double, and come from a sum of a product
+/// or two, such as a rotation; another such sum gives normals and corners. Of the order of what is left of them where a
+/// plane is across an axis or near the origin; in float it adds nothing elsewhere.
+constexpr double kDescribed = 8 * kRoundoff<double>;
+
 /// The length of no segment between finite shapes and the camera is greater.
 double scene_diagonal(const Scene& scene) {
     Box all{scene.camera.look_from, scene.camera.look_from};
@@ -53,10 +58,11 @@ double flat_bound(const Vector3d& x, const Vector3d& n, const Vector3d& a, const
     return u * first_order + 63 * u * u * diagonal;
 }
 
-/// The same for two spheres, any normal: a bound of |centre - centre'| + |radius - radius'|. In units of roundoff: twice
-/// the distance of each centre from the origin, with its way (stored, and moved to a time); the distance of a hit from
-/// the origin; and 20 radii: 2 for the radii stored, 4 for the unit normal or, where a hit is not put back, 13 for its
-/// distance (5 for c, whose terms reach (2 r)^2, over 2 r, and 3 for the root), and 5 for the side that the other sees.
+/// The same for two spheres, any normal: a bound of |centre - centre'| + |radius - radius'|. In units of roundoff:
+/// twice the distance of each centre from the origin, with its way (stored, and moved to a time); the distance of a hit
+/// from the origin; and 20 radii: 2 for the radii stored, 4 for the unit normal or, where a hit is not put back, 13 for
+/// its distance (5 for c, whose terms reach (2 r)^2, over 2 r, and 3 for the root), and 5 for the side that the other
+/// sees.
 template <class Scalar>
 double sphere_bound(const Sphere& a, const Sphere& b) {
     const auto reach = [](const Sphere& s) { return s.center0.norm() + (s.center1 - s.center0).norm(); };
@@ -155,8 +161,11 @@ class QuadIndex {
 template <class Scalar>
 class Finder {
   public:
-    explicit Finder(const Scene& scene)
-        : scene_(scene), out_(no_coincidence(scene)), diagonal_(scene_diagonal(scene)) {}
+    explicit Finder(const Scene& scene) : scene_(scene), out_(no_coincidence(scene)), diagonal_(scene_diagonal(scene)) {
+        for (const Quad& quad : scene.quads)
+            described_.push_back(kDescribed * (quad.corner.norm() + quad.edge_u.norm() + quad.edge_v.norm()));
+        for (const Plane& plane : scene.planes) described_.push_back(kDescribed * plane.point.norm());
+    }
 
     Coincidence find() {
         hide_spheres();
@@ -183,7 +192,8 @@ class Finder {
             const Sphere& sphere = scene_.spheres[i];
             const double key =
                 kKeyA.dot(center(sphere, open)) + kKeyB.dot(center(sphere, close)) + 0.5436 * sphere.radius;
-            // The coefficients add up to less than 5, and the bounds of spheres that coincide differ by far less than 2.
+            // The coefficients add up to less than 5, and the bounds of spheres that coincide differ by far less
+            // than 2.
             const double window = 10 * sphere_bound<Scalar>(sphere, sphere);
             if (kept.find(key, window, [&](std::uint32_t k) { return coincide(scene_.spheres[k], sphere); })) {
                 out_.is_hidden[i] = true;
@@ -194,15 +204,18 @@ class Finder {
     }
 
     /// Planes coincide where the bound holds at all points of both: their normals and one point each see to it.
-    [[nodiscard]] bool planes_coincide(const Coincidence::Flat& a, const Coincidence::Flat& b) const {
+    [[nodiscard]] bool planes_coincide(std::uint32_t plane_a, std::uint32_t plane_b) const {
         constexpr double u = kRoundoff<Scalar>;
+        const Coincidence::Flat& a = out_.flats[scene_.quads.size() + plane_a];
+        const Coincidence::Flat& b = out_.flats[scene_.quads.size() + plane_b];
         const Vector3d normal = a.normal.dot(b.normal) < 0 ? Vector3d(-b.normal) : b.normal;
         for (int i = 0; i < 3; ++i) {
-            const double most = 5 * u * (std::abs(a.normal[i]) + std::abs(normal[i])) + 63 * u * u;
+            const double most = 5 * u * (std::abs(a.normal[i]) + std::abs(normal[i])) + 63 * u * u + kDescribed;
             if (!(std::abs(a.normal[i] - normal[i]) <= most)) return false;
         }
         return std::abs(a.normal.dot(b.point - a.point)) <=
-               flat_bound<Scalar>(b.point, a.normal, a.point, b.point, diagonal_);
+               flat_bound<Scalar>(b.point, a.normal, a.point, b.point, diagonal_) +
+                   described_[scene_.quads.size() + plane_a] + described_[scene_.quads.size() + plane_b];
     }
 
     void hide_planes() {
@@ -213,9 +226,9 @@ class Finder {
             const Vector3d& n = flat.normal;  // the key is the same for -n
             const double key = kKeyA.dot(flat.point) + kKeyB.dot(n.cwiseProduct(n)) +
                                kKeyA.dot(Vector3d(n[1] * n[2], n[2] * n[0], n[0] * n[1]));
-            const double window = 200 * kRoundoff<Scalar> * (1 + flat.point.norm() + kRoundoff<Scalar> * diagonal_);
-            if (kept.find(key, window,
-                          [&](std::uint32_t k) { return planes_coincide(out_.flats[first_plane + k], flat); })) {
+            constexpr double u = kRoundoff<Scalar>;
+            const double window = 200 * u * (1 + flat.point.norm() + u * diagonal_) + 10 * described_[first_plane + i];
+            if (kept.find(key, window, [&](std::uint32_t k) { return planes_coincide(k, i); })) {
                 out_.is_hidden[id(first_plane + i)] = true;
             } else {
                 kept.add(key, i);
@@ -224,11 +237,13 @@ class Finder {
     }
 
     /// Whether all of a quad lies in the plane of normal n through `on_plane`, where that is also stored.
-    [[nodiscard]] bool lies_in(const Vector3d& n, const Vector3d& on_plane, std::uint32_t quad) const {
+    [[nodiscard]] bool lies_in(const Vector3d& n, const Vector3d& on_plane, double plane_error,
+                               std::uint32_t quad) const {
         bool is_in = true;
         for_each_corner(scene_.quads[quad], [&](const Vector3d& x) {
-            is_in = is_in && std::abs(n.dot(x - on_plane)) <=
-                                 flat_bound<Scalar>(x, n, on_plane, out_.flats[quad].point, diagonal_);
+            if (!is_in) return;
+            const double bound = flat_bound<Scalar>(x, n, on_plane, out_.flats[quad].point, diagonal_);
+            is_in = std::abs(n.dot(x - on_plane)) <= bound + plane_error + described_[quad];
         });
         return is_in;
     }
@@ -253,7 +268,7 @@ class Finder {
             if (out_.is_hidden[id(index)]) continue;
             const Coincidence::Flat plane = out_.flats[index];
             quads.for_each_near(everywhere, plane.point, plane.normal, [&](std::uint32_t quad) {
-                if (!lies_in(plane.normal, plane.point, quad)) return;
+                if (!lies_in(plane.normal, plane.point, described_[index], quad)) return;
                 quads.take(quad);
                 share(quad, plane.point, plane.normal, plane.group);
                 if (static_cast<std::int64_t>(quad) >= scene_.planes[i].quads_before) out_.is_hidden[id(quad)] = true;
@@ -284,7 +299,7 @@ class Finder {
             const Vector3d point = i == 0 ? plane.point : onto_plane(out_.flats[member].point);
             if (point.norm() < nearest.norm()) nearest = point;
             quads.for_each_near(quads.box(member), plane.point, plane.normal, [&](std::uint32_t quad) {
-                if (!lies_in(plane.normal, point, quad)) return;
+                if (!lies_in(plane.normal, point, described_[first], quad)) return;
                 quads.take(quad);
                 members.push_back(quad);
             });
@@ -298,6 +313,7 @@ class Finder {
     const Scene& scene_;
     Coincidence out_;
     double diagonal_;
+    std::vector<double> described_;  ///< by flat shape: how far off its plane its own description may be
 };
 
 }  // namespace

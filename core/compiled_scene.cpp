@@ -179,7 +179,9 @@ class Compiler {
     void add_flats() {
         const std::size_t first_plane = scene_.spheres.size() + scene_.quads.size();
         const Ids ids = shown_ids(scene_.spheres.size(), first_plane);
-        const auto box_of = [&](std::uint32_t id) { return quad_box<Scalar>(scene_.quads[id - scene_.spheres.size()]); };
+        const auto box_of = [&](std::uint32_t id) {
+            return quad_box<Scalar>(scene_.quads[id - scene_.spheres.size()]);
+        };
         std::vector<Box> boxes;
         for (const std::uint32_t id : ids) boxes.push_back(box_of(id));
         const auto make_tree = [&]<int width>() {

@@ -27,8 +27,8 @@ RAYPOOL_INLINE Real outward_part(const Real& p, const Real& offset, const Split<
     return mad<Real>(abs(p) + abs(offset), scale.high, Real(1)) * (outward * Real(kPart));
 }
 
-/// Whether the whole number below x * scale + part is odd, as 0 or 1, for any |x * scale| < 2^47 in float: the product's
-/// rounding error is carried along, so the answer does not degrade with distance as floor(x * scale) does.
+/// Whether the whole number below x * scale + part is odd, as 0 or 1, for any |x * scale| < 2^47 in float: the
+/// product's rounding error is carried along, so the answer does not degrade with distance as floor(x * scale) does.
 template <class Real>
 RAYPOOL_INLINE Real cell_parity(const Real& x, const Split<Real>& scale, const Real& part = Real(0)) {
     const Real high = x * scale.high;

@@ -1,7 +1,7 @@
 /// The closest hit of one ray: the scene's large shapes, then the trees, a register of boxes or shapes at a time.
 ///
-/// Called by whatever traces rays one by one. Ties go to the smaller primitive id, so to the first listed of its kind. `Work` counts what was tested:
-/// WorkCount does, NoWorkCount costs nothing.
+/// Called by whatever traces rays one by one. Ties go to the smaller primitive id, so to the first listed of its kind.
+/// `Work` counts what was tested: WorkCount does, NoWorkCount costs nothing.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,8 @@ struct Methods<1> {
         return naive::haines_distance<Real>(origin, direction, center, radius, Real(naive::kBookEpsilon));
     }
     template <class Real>
-    RAYPOOL_INLINE static Mask<Real> is_odd_cell(const Vec3<Real>& p, const Vec3<Real>& outward, const Split<Real>& scale) {
+    RAYPOOL_INLINE static Mask<Real> is_odd_cell(const Vec3<Real>& p, const Vec3<Real>& outward,
+                                                 const Split<Real>& scale) {
         return raypool::is_odd_cell<Real>(p, outward, scale);
     }
 };
@@ -31,7 +32,8 @@ struct Methods<2> {
         return select(is_leaving, second, first);
     }
     template <class Real>
-    RAYPOOL_INLINE static Mask<Real> is_odd_cell(const Vec3<Real>& p, const Vec3<Real>& outward, const Split<Real>& scale) {
+    RAYPOOL_INLINE static Mask<Real> is_odd_cell(const Vec3<Real>& p, const Vec3<Real>& outward,
+                                                 const Split<Real>& scale) {
         return raypool::is_odd_cell<Real>(p, outward, scale);
     }
 };
@@ -80,6 +82,8 @@ RenderReport render_naively(NaiveVariant variant, const CompiledScene<float>& sc
             return render<NaiveVariant::LeastDistance>(scene, settings, framebuffer);
         case NaiveVariant::HalfB:
             return render<NaiveVariant::HalfB>(scene, settings, framebuffer);
+        case NaiveVariant::IdAlone:
+            return render<NaiveVariant::IdAlone>(scene, settings, framebuffer);
         case NaiveVariant::Truncation:
             break;
     }
