@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "recursive/engine.h"
 
 namespace raypool::stability {
