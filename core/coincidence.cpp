@@ -97,15 +97,15 @@ class QuadIndex {
   public:
     explicit QuadIndex(std::vector<Box> boxes) : boxes_(std::move(boxes)), tree_(build_binary_bvh(boxes_, 4)) {
         parent_.resize(tree_.nodes.size());
-        left_.resize(tree_.nodes.size());
+        free_count_.resize(tree_.nodes.size());
         leaf_.resize(boxes_.size());
         is_taken_.resize(boxes_.size());
         for (std::uint32_t i = static_cast<std::uint32_t>(tree_.nodes.size()); i-- > 0;) {
             const BinaryBvh::Node& node = tree_.nodes[i];
-            left_[i] = node.count;
+            free_count_[i] = node.count;
             for (std::uint32_t k = node.first; k < node.first + node.count; ++k) leaf_[tree_.order[k]] = i;
             if (node.count > 0) continue;
-            left_[i] = left_[node.left] + left_[node.left + 1];
+            free_count_[i] = free_count_[node.left] + free_count_[node.left + 1];
             parent_[node.left] = parent_[node.left + 1] = i;
         }
     }
@@ -116,7 +116,7 @@ class QuadIndex {
     void take(std::uint32_t quad) {
         is_taken_[quad] = true;
         for (std::uint32_t node = leaf_[quad];; node = parent_[node]) {
-            --left_[node];
+            --free_count_[node];
             if (node == 0) return;
         }
     }
@@ -136,7 +136,7 @@ class QuadIndex {
             const std::uint32_t i = stack.back();
             stack.pop_back();
             const BinaryBvh::Node& node = tree_.nodes[i];
-            if (left_[i] == 0 || !is_near(node.box)) continue;
+            if (free_count_[i] == 0 || !is_near(node.box)) continue;
             if (node.count == 0) {
                 stack.push_back(node.left + 1);
                 stack.push_back(node.left);
@@ -153,8 +153,8 @@ class QuadIndex {
     std::vector<Box> boxes_;
     BinaryBvh tree_;
     std::vector<std::uint32_t> parent_;
-    std::vector<std::uint32_t> left_;  ///< quads below a node that are not taken
-    std::vector<std::uint32_t> leaf_;  ///< by quad
+    std::vector<std::uint32_t> free_count_;  ///< quads below a node that are not taken
+    std::vector<std::uint32_t> leaf_;        ///< by quad
     std::vector<bool> is_taken_;
 };
 
