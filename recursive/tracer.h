@@ -23,7 +23,7 @@ struct Path {
     Ray<Scalar> ray;
     Vec3<Scalar> throughput;
     PathKey<Scalar> key;
-    std::int32_t leaving_id;  ///< the primitive the ray starts on
+    std::int32_t leaving_id;  ///< what the ray starts on: Scattered::leaving_id
     std::uint32_t step;       ///< path_step: hits so far, and the branch
 };
 
@@ -120,7 +120,7 @@ class Tracer {
         path.ray.origin = out.origin;
         path.ray.direction = out.direction;
         path.throughput = out.throughput;
-        path.leaving_id = static_cast<std::int32_t>(hit.primitive_id);
+        path.leaving_id = static_cast<std::int32_t>(out.leaving_id);
         ++path.step;
         if constexpr (splitting == Splitting::On) {
             if (out.is_split) {

@@ -257,7 +257,7 @@ class Stages {
         const unsigned alive = mask_bits(out.is_alive && !is_deepest) & hits;
         RayRecord<Real> next = record;
         next.ray.origin = out.origin;
-        next.leaving_id = id_bits(id);
+        next.leaving_id = id_bits(out.leaving_id);
         next.step = step;
         if constexpr (splitting == Splitting::On) {
             const Uint32<Real> reflected = path_step::reflected_branch<Uint32<Real>>(step);
