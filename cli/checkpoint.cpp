@@ -77,11 +77,14 @@ Checkpoint::~Checkpoint() {
     last_words = nullptr;
 }
 
-bool Checkpoint::keep(RenderSums& sums) {
+bool Checkpoint::keep(RenderSums& sums, const std::function<void()>& complete) {
     if (!is_kept()) return true;
     const std::chrono::duration<double> since = Clock::now() - written_;
     const std::int64_t asked = ranks_.greatest(2 * stop_signal + (since.count() >= options_.every_s ? 1 : 0));
-    if (asked != 0) write(sums);
+    if (asked != 0) {
+        complete();
+        write(sums);
+    }
     if (asked < 2) return true;
     stop_signal = static_cast<int>(asked / 2);
     return false;

@@ -57,31 +57,37 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
         const auto keep = [&] {
             sums.sample_counts = plan.sample_counts();
             sums.rounds = plan.rounds();
-            return checkpoint.keep(sums);
+            return checkpoint.keep(sums, [] {});  // a round ends merged
         };
         RenderReport report = render_adaptively(engine, scene, record.settings, plan, sums.framebuffer, keep);
         adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds()};
         return report;
     }
-    RenderReport report;
-    report.threads.resize(static_cast<std::size_t>(record.settings.threads));
+    std::unique_ptr<RenderSession> session;
     for (const SampleRange& gap : gaps(sums.ranges, record.settings.end_sample)) {
         RenderSettings settings = record.settings;
         settings.first_sample = std::max(gap.first, settings.first_sample);
         settings.end_sample = gap.end;
         if (settings.first_sample >= settings.end_sample) continue;
+        if (session == nullptr) session = engine.begin(scene, settings, sums.framebuffer);
         if (!checkpoint.is_kept()) {
-            report.add(engine.render(scene, settings, sums.framebuffer));
+            session->add({settings.first_sample, settings.end_sample, nullptr});
             sums.ranges = with_range(std::move(sums.ranges), {settings.first_sample, settings.end_sample});
             continue;
         }
-        report.add(render_in_pieces(engine, scene, settings, sums.framebuffer, [&](const SampleRange& range) {
+        render_in_pieces(*session, settings, [&](const SampleRange& range) {
             sums.ranges = with_range(std::move(sums.ranges), range);
-            return checkpoint.keep(sums);
-        }));
+            return checkpoint.keep(sums, [&] { session->merge(); });
+        });
         if (checkpoint.stopped_by() != 0) break;
     }
-    return report;
+    if (session == nullptr) {
+        RenderReport nothing;
+        nothing.threads.resize(static_cast<std::size_t>(record.settings.threads));
+        return nothing;
+    }
+    session->merge();
+    return session->report();
 }
 
 template <class Scalar>

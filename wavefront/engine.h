@@ -15,8 +15,10 @@ class WavefrontEngine : public Engine {
     explicit WavefrontEngine(const PoolSettings& pool) : pool_(pool) {}
     [[nodiscard]] std::string name() const override { return "wavefront"; }
     /// Throws InputError for an accumulator that needs pixels owned by threads with a shared pool.
-    RenderReport render(const CompiledScene<float>&, const RenderSettings&, Framebuffer&) const override;
-    RenderReport render(const CompiledScene<double>&, const RenderSettings&, Framebuffer&) const override;
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>&, const RenderSettings&,
+                                                       Framebuffer&) const override;
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<double>&, const RenderSettings&,
+                                                       Framebuffer&) const override;
 
   private:
     PoolSettings pool_;
