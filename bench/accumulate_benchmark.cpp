@@ -149,7 +149,8 @@ std::vector<Deposit> pool_order() {
     settings.end_sample = 4;
     Recorder recorder;
     const RenderContext<float> context{
-        paper_scene(), settings, kPool, random_seed(settings.seed, settings.sampler), StageRig<float>::roomy(), recorder};
+        paper_scene(), settings, kPool, random_seed(settings.seed, settings.sampler), StageRig<float>::roomy(),
+        recorder};
     InPlacePool<kPaper, float> pool(PoolSettings::kSharedCapacity, static_cast<std::size_t>(kPool.batch), 0);
     ThreadRounds rounds(1);
     render_shared_pool<kPaper, Lanes, NoWorkCount, Splitting::Off>(context, pool, rounds);

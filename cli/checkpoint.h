@@ -34,8 +34,8 @@ class Checkpoint {
     ~Checkpoint();
 
     [[nodiscard]] bool is_kept() const { return !options_.file.empty(); }
-    /// To be asked between pieces of the render: writes the file if it is time to, after complete() has brought all that
-    /// was rendered into `sums`. False when the render shall stop.
+    /// To be asked between pieces of the render: writes the file if it is time to, after complete() has brought all
+    /// that was rendered into `sums`. False when the render shall stop.
     bool keep(RenderSums& sums, const std::function<void()>& complete);
     /// Gathers the sums, with a file or without, and writes it now.
     void write(RenderSums& sums);

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/thread_limit.h"
 
 namespace raypool::cli {
 
@@ -33,12 +34,8 @@ std::uint64_t parse_seed(std::string_view text) {
 }
 
 int thread_count(int asked) {
-    constexpr int kMostThreads = 4096;
-    const int limit = std::min(omp_get_thread_limit(), kMostThreads);
     const int count = asked == 0 ? omp_get_max_threads() : asked;
-    if (count > limit)
-        throw InputError(fmt::format("{}: must be at most {}{}, got {}", asked == 0 ? "OMP_NUM_THREADS" : "--threads",
-                                     limit, limit < kMostThreads ? " (OMP_THREAD_LIMIT)" : "", count));
+    check_thread_count(count, asked == 0 ? "OMP_NUM_THREADS" : "--threads");
     return count;
 }
 
@@ -48,7 +45,8 @@ void check_distinct(const std::vector<std::pair<std::string, std::string>>& file
         if (file.empty()) continue;
         std::error_code error;
         const std::filesystem::path path = weakly_canonical(std::filesystem::absolute(file, error), error);
-        if (error || (exists(path, error) && !is_regular_file(path, error))) continue;  // a device, or refused elsewhere
+        if (error || (exists(path, error) && !is_regular_file(path, error)))
+            continue;  // a device, or refused elsewhere
         const auto [other, is_new] = option_of.emplace(path, option);
         if (!is_new) throw InputError(fmt::format("{}: {} is also the file of {}", option, file, other->second));
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -60,7 +61,7 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
             return checkpoint.keep(sums, [] {});  // a round ends merged
         };
         RenderReport report = render_adaptively(engine, scene, record.settings, plan, sums.framebuffer, keep);
-        adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds()};
+        adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds(), plan.is_reached()};
         return report;
     }
     std::unique_ptr<RenderSession> session;
@@ -86,8 +87,7 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
         nothing.threads.resize(static_cast<std::size_t>(record.settings.threads));
         return nothing;
     }
-    session->merge();
-    return session->report();
+    return session->finish();
 }
 
 template <class Scalar>
@@ -113,9 +113,14 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
     }
     Progress progress;
     record.settings.progress = &progress;
-    progress.paths = compiled.pixel_count() * sums.sample_count();
+    progress.paths = is_adaptive
+                         ? std::accumulate(sums.sample_counts.begin(), sums.sample_counts.end(), std::int64_t{0})
+                         : compiled.pixel_count() * sums.sample_count();
+    progress.before = progress.paths.load();
     {
-        const ProgressBar bar(progress, path_count(compiled, record.settings), {"M paths/s", 1e-6}, is_quiet);
+        // How many samples an adaptive render will take is not known.
+        const std::int64_t total = is_adaptive ? 0 : path_count(compiled, record.settings);
+        const ProgressBar bar(progress, total, {"M paths/s", 1e-6}, is_quiet);
         const std::unique_ptr<Engine> engine = make_engine(record, ranks);
         record.report = render_missing(*engine, compiled, record, sums, record.adaptive, checkpoint);
     }

@@ -23,7 +23,8 @@ class RankEngine : public Engine {
     RankEngine(std::unique_ptr<Engine> engine, Ranks& ranks);
 
     [[nodiscard]] std::string name() const override { return engine_->name(); }
-    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene, const RenderSettings& settings,
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene,
+                                                       const RenderSettings& settings,
                                                        Framebuffer& framebuffer) const override;
     [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<double>& scene,
                                                        const RenderSettings& settings,

@@ -19,8 +19,7 @@ void RenderReport::add(const RenderReport& later) {
 
 RenderReport render_whole(RenderSession& session, const RenderSettings& settings) {
     session.add({settings.first_sample, settings.end_sample, settings.pixels});
-    session.merge();
-    return session.report();
+    return session.finish();
 }
 
 void check_settings(const RenderSettings& settings, const Framebuffer& framebuffer) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/compiled_scene.h"
@@ -38,6 +39,7 @@ struct Grain {
 /// Paths finished so far, for whoever shows it. Engines add, in batches; another thread may read at any time.
 struct Progress {
     std::atomic<std::int64_t> paths = 0;
+    std::atomic<std::int64_t> before = 0;  ///< of these, from a run that is gone on with: they took no time now
 };
 
 struct RenderSettings {
@@ -48,10 +50,10 @@ struct RenderSettings {
     const std::vector<std::uint32_t>* pixels = nullptr;
     std::uint64_t seed = 0;
     Sampler sampler = Sampler::Independent;
-    int split_depth = 0;  ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits
+    int split_depth = 0;    ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits
     bool roulette = false;  ///< end paths that carry little by chance, without bias (core/shade.h)
     int threads = 1;
-    LoopSchedule schedule;
+    LoopSchedule schedule;  ///< of an engine that loops over the image; so is the grain
     Grain grain;
     bool count_work = false;  ///< count box and primitive tests (slower: with code compiled for every feature)
     bool log_rounds = false;  ///< report the rounds of a wavefront engine; two looks at the clock a stage and batch
@@ -157,6 +159,11 @@ class RenderSession {
     }
     /// Of the setup, and all that was added and merged.
     [[nodiscard]] const RenderReport& report() const { return report_; }
+    /// Merges, and gives the report away: nothing may be added afterwards.
+    RenderReport finish() {
+        merge();
+        return std::move(report_);
+    }
 
   protected:
     virtual RenderReport render(const RenderUnit& unit) = 0;
@@ -176,6 +183,9 @@ class Engine {
     virtual ~Engine() = default;
 
     [[nodiscard]] virtual std::string name() const = 0;
+    /// Whether threads get parts of the image, as RenderSettings::schedule and grain say. Where not, the two do
+    /// nothing.
+    [[nodiscard]] virtual bool loops_over_image() const { return true; }
 
     /// Begins a render into the framebuffer, which has the scene's size. Of the settings, the samples and pixels are
     /// left to the units. Throws InputError for settings that this engine cannot carry out on this machine, and for

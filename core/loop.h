@@ -22,8 +22,8 @@ struct PixelRange {
 
 /// Pixels of one line: side by side, or those of a list.
 struct LinePixels {
-    std::int64_t first;                    ///< in the image; without a list, the pixels follow each other from here
-    const std::uint32_t* list;             ///< or null
+    std::int64_t first;         ///< in the image; without a list, the pixels follow each other from here
+    const std::uint32_t* list;  ///< or null
     std::int64_t count;
     [[nodiscard]] std::int64_t operator[](std::int64_t i) const {
         return list == nullptr ? first + i : static_cast<std::int64_t>(list[i]);
@@ -78,7 +78,8 @@ class WorkItems {
     [[nodiscard]] bool are_single_pixels() const { return item_width_ == 1 && item_height_ == 1; }
     [[nodiscard]] std::int64_t id_of(std::int64_t item) const {
         if (pixels_ == nullptr) return item;
-        return are_single_pixels() ? (*pixels_)[static_cast<std::size_t>(item)] : items_[static_cast<std::size_t>(item)];
+        return are_single_pixels() ? (*pixels_)[static_cast<std::size_t>(item)]
+                                   : items_[static_cast<std::size_t>(item)];
     }
     void find_items() {
         for (auto pixel = pixels_->begin(); pixel != pixels_->end();) {
@@ -176,9 +177,9 @@ inline void count_setup(const RenderSettings& settings, double start_s, int thre
 }
 
 /// Runs body(ThreadWork&, SampleAudit&) in settings.threads OpenMP threads under settings.schedule, denormals flushed.
-/// Where OpenMP gives fewer threads, the report and the trace are of those. The body must end in a worksharing loop with
-/// nowait; what a thread then waits for the others is measured here. What it throws, this throws; a body with barriers
-/// must throw nothing, since the others would wait for ever.
+/// Where OpenMP gives fewer threads, the report and the trace are of those. The body must end in a worksharing loop
+/// with nowait; what a thread then waits for the others is measured here. What it throws, this throws; a body with
+/// barriers must throw nothing, since the others would wait for ever.
 template <class Body>
 RenderReport run_threads(const RenderSettings& settings, Body body) {
     RenderReport report;
@@ -214,8 +215,7 @@ RenderReport run_threads(const RenderSettings& settings, Body body) {
     for (ThreadWork& thread : report.threads) thread.wait_s = std::max(0.0, report.seconds - thread.busy_s);
     for (const SampleAudit& audit : audits) report.audit.add(audit);
     if (settings.trace != nullptr) {
-        for (int i = 0; i < count; ++i)
-            settings.trace->lane(i).span("wait", ends[static_cast<std::size_t>(i)], end);
+        for (int i = 0; i < count; ++i) settings.trace->lane(i).span("wait", ends[static_cast<std::size_t>(i)], end);
         settings.trace->drop_idle_lanes();
     }
     return report;

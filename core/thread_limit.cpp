@@ -96,10 +96,11 @@ void check_thread_count(int count, const char* option) {
     int error = 0;
     const int created = 1 + Trial().run(count - 1, error);
     if (created < count)
-        throw InputError(fmt::format("{}: of {} threads the system lets this process have {} ({}); ask for fewer, or "
-                                     "raise the limit (`ulimit -u`, pids.max of the control group) or, where memory is "
-                                     "what lacks, `ulimit -v` or OMP_STACKSIZE",
-                                     option, count, created, std::strerror(error)));
+        throw InputError(
+            fmt::format("{}: of {} threads the system lets this process have {} ({}); ask for fewer, or "
+                        "raise the limit (`ulimit -u`, pids.max of the control group) or, where memory is "
+                        "what lacks, `ulimit -v` or OMP_STACKSIZE",
+                        option, count, created, std::strerror(error)));
 }
 
 }  // namespace raypool

@@ -71,6 +71,7 @@ class Session : public RenderSession {
         : scene_(scene), settings_(settings), framebuffer_(framebuffer) {
         const double start = omp_get_wtime();
         check_settings(settings, framebuffer);
+        report_.threads.reserve(static_cast<std::size_t>(settings.threads));  // so that no report fails behind a render
         if constexpr (form == Form::Recursive) {
             check_stack<needs, Scalar, Work, splitting, rules>(settings.depth, settings.threads);
             report_.seconds = report_.setup_s = omp_get_wtime() - start;
@@ -149,9 +150,9 @@ std::unique_ptr<RenderSession> begin(const CompiledScene<Scalar>& scene, const R
     if (settings.count_work || counts_for_image)
         return begin<form, kEverything, Scalar, WorkCount>(scene, settings, framebuffer);
     return dispatch_needs(scene.needs, [&]<SceneNeeds needs>() {
-        return are_plain(settings) ? begin<form, needs, Scalar, NoWorkCount, Splitting::Off, Rules::Plain>(
-                                         scene, settings, framebuffer)
-                                   : begin<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);
+        return are_plain(settings)
+                   ? begin<form, needs, Scalar, NoWorkCount, Splitting::Off, Rules::Plain>(scene, settings, framebuffer)
+                   : begin<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);
     });
 }
 

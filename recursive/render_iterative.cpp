@@ -7,8 +7,8 @@ std::unique_ptr<RenderSession> IterativeEngine::begin(const CompiledScene<float>
                                                       Framebuffer& framebuffer) const {
     return recursive::begin<Form::Iterative>(scene, settings, framebuffer);
 }
-std::unique_ptr<RenderSession> IterativeEngine::begin(const CompiledScene<double>& scene, const RenderSettings& settings,
-                                                      Framebuffer& framebuffer) const {
+std::unique_ptr<RenderSession> IterativeEngine::begin(const CompiledScene<double>& scene,
+                                                      const RenderSettings& settings, Framebuffer& framebuffer) const {
     return recursive::begin<Form::Iterative>(scene, settings, framebuffer);
 }
 

@@ -8,8 +8,8 @@ std::unique_ptr<RenderSession> RecursiveEngine::begin(const CompiledScene<float>
                                                       Framebuffer& framebuffer) const {
     return recursive::begin<Form::Recursive>(scene, settings, framebuffer);
 }
-std::unique_ptr<RenderSession> RecursiveEngine::begin(const CompiledScene<double>& scene, const RenderSettings& settings,
-                                                      Framebuffer& framebuffer) const {
+std::unique_ptr<RenderSession> RecursiveEngine::begin(const CompiledScene<double>& scene,
+                                                      const RenderSettings& settings, Framebuffer& framebuffer) const {
     return recursive::begin<Form::Recursive>(scene, settings, framebuffer);
 }
 

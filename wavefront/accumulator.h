@@ -1,9 +1,9 @@
 /// Accumulators: the ways in which deposits reach the framebuffer. To compare them is one of the project's experiments.
 ///
-/// An accumulator is made once a session and adds for all threads. Those that keep sums of their own bring them into the
-/// framebuffer, and begin anew, by merge(), a block of pixels at a time: threads may merge different blocks at once, and
-/// none adds meanwhile. Those that add integers give the same bits in any order. AtomicReal adds floating-point numbers:
-/// its image depends on the order, and so on threads and schedule.
+/// An accumulator is made once a session and adds for all threads. Those that keep sums of their own bring them into
+/// the framebuffer, and begin anew, by merge(), a block of pixels at a time: threads may merge different blocks at
+/// once, and none adds meanwhile. Those that add integers give the same bits in any order. AtomicReal adds
+/// floating-point numbers: its image depends on the order, and so on threads and schedule.
 #pragma once
 
 #include <algorithm>
@@ -50,7 +50,8 @@ inline std::size_t block_count_of(std::size_t pixels) {
 template <class T>
 class Zeros {
   public:
-    explicit Zeros(std::size_t size) : memory_(static_cast<T*>(std::calloc(std::max<std::size_t>(size, 1), sizeof(T)))) {
+    explicit Zeros(std::size_t size)
+        : memory_(static_cast<T*>(std::calloc(std::max<std::size_t>(size, 1), sizeof(T)))) {
         if (memory_ == nullptr) throw std::bad_alloc();
     }
     [[nodiscard]] T* data() const { return memory_.get(); }
@@ -150,12 +151,11 @@ class PlanarInt64 : public AccumulatorBase<Scalar> {
 template <class Scalar>
 class PrivateInt64 : public AccumulatorBase<Scalar> {
   public:
-    PrivateInt64(Framebuffer& framebuffer, int threads)
-        : sums_(framebuffer.sums()), squares_(framebuffer.squares()) {
+    PrivateInt64(Framebuffer& framebuffer, int threads) : sums_(framebuffer.sums()), squares_(framebuffer.squares()) {
         parts_.reserve(static_cast<std::size_t>(threads));
         for (int i = 0; i < threads; ++i)
-            parts_.push_back({Zeros<std::int64_t>(sums_.size() + squares_.size()),
-                              std::vector<std::uint8_t>(block_count(), 0)});
+            parts_.push_back(
+                {Zeros<std::int64_t>(sums_.size() + squares_.size()), std::vector<std::uint8_t>(block_count(), 0)});
     }
     void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int thread) override {
         Part& part = parts_[static_cast<std::size_t>(thread)];

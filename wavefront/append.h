@@ -176,6 +176,7 @@ class AtomicPool : public DensePool<needs, Scalar> {
             this->total_ = next_.exchange(0);
         }
     }
+
   private:
     typename Base::Records next_records_;
     std::atomic<std::size_t> next_ = 0;
@@ -211,6 +212,7 @@ class PrefixSumPool : public DensePool<needs, Scalar> {
             for (Buffer& buffer : buffers_) this->total_ += std::exchange(buffer.count, 0);
         }
     }
+
   private:
     struct alignas(64) Buffer {
         std::unique_ptr<typename Base::Records> records;

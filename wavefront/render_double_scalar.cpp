@@ -3,8 +3,8 @@
 
 namespace raypool::wavefront {
 
-std::unique_ptr<RenderSession> begin_scalar(const CompiledScene<double>& scene, const RenderSettings& settings, const PoolSettings& pool,
-                           Framebuffer& framebuffer) {
+std::unique_ptr<RenderSession> begin_scalar(const CompiledScene<double>& scene, const RenderSettings& settings,
+                                            const PoolSettings& pool, Framebuffer& framebuffer) {
     return begin<double>(scene, settings, pool, framebuffer);
 }
 

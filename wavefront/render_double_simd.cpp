@@ -3,8 +3,8 @@
 
 namespace raypool::wavefront {
 
-std::unique_ptr<RenderSession> begin_simd(const CompiledScene<double>& scene, const RenderSettings& settings, const PoolSettings& pool,
-                         Framebuffer& framebuffer) {
+std::unique_ptr<RenderSession> begin_simd(const CompiledScene<double>& scene, const RenderSettings& settings,
+                                          const PoolSettings& pool, Framebuffer& framebuffer) {
     return begin<Wide<double, stdx::native_simd<double>::size()>>(scene, settings, pool, framebuffer);
 }
 

@@ -3,8 +3,8 @@
 
 namespace raypool::wavefront {
 
-std::unique_ptr<RenderSession> begin_simd(const CompiledScene<float>& scene, const RenderSettings& settings, const PoolSettings& pool,
-                         Framebuffer& framebuffer) {
+std::unique_ptr<RenderSession> begin_simd(const CompiledScene<float>& scene, const RenderSettings& settings,
+                                          const PoolSettings& pool, Framebuffer& framebuffer) {
     return begin<Wide<float, stdx::native_simd<float>::size()>>(scene, settings, pool, framebuffer);
 }
 

@@ -11,8 +11,8 @@ std::unique_ptr<RenderSession> begin_scalar(const CompiledScene<float>&, const R
 std::unique_ptr<RenderSession> begin_scalar(const CompiledScene<double>&, const RenderSettings&, const PoolSettings&,
                                             Framebuffer&);
 std::unique_ptr<RenderSession> begin_simd(const CompiledScene<float>&, const RenderSettings&, const PoolSettings&,
-                                            Framebuffer&);
+                                          Framebuffer&);
 std::unique_ptr<RenderSession> begin_simd(const CompiledScene<double>&, const RenderSettings&, const PoolSettings&,
-                                            Framebuffer&);
+                                          Framebuffer&);
 
 }  // namespace raypool::wavefront

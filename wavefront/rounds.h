@@ -173,9 +173,11 @@ class SharedPoolSession : public PoolSession<ScalarOf<Real>> {
         const RenderSettings& settings = this->context().settings;
         const CameraPaths image(unit, scene.width, scene.height);
         PathCounter camera(image.left());
+        RenderSettings loop = settings;
+        loop.schedule = this->context().pool.batch_schedule;
 
         // Nothing in here may throw: the other threads would wait at a barrier for ever.
-        return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) noexcept {
+        return run_threads(loop, [&](ThreadWork& work, SampleAudit& audit) noexcept {
             const auto thread = static_cast<std::size_t>(omp_get_thread_num());
             SharedPool<needs, Scalar>& pool = *pool_;
             ThreadStages& stages = *stages_[thread];

@@ -1,6 +1,7 @@
 /// What the sessions of all pools share: the accumulator, the settings of a unit, the check of the memory, the report.
 ///
-/// All memory is taken when a session is made. A unit takes none, so nothing is thrown where threads wait for each other.
+/// All memory is taken when a session is made. A unit takes none, so nothing is thrown where threads wait for each
+/// other.
 #pragma once
 
 #include <omp.h>
@@ -26,12 +27,9 @@ class PoolSession : public RenderSession {
           settings_(settings),
           pool_(pool),
           accumulator_(make_accumulator<Scalar>(pool.accumulator, framebuffer, settings.threads)),
-          context_{scene,
-                   settings_,
-                   pool_,
-                   random_seed(settings.seed, settings.sampler),
-                   framebuffer.fixed_point(),
-                   *accumulator_} {
+          context_{
+              scene,        settings_, pool_, random_seed(settings.seed, settings.sampler), framebuffer.fixed_point(),
+              *accumulator_} {
         report_.record_bytes = record_bytes;
     }
 

@@ -69,7 +69,8 @@ template <NaiveVariant variant>
 RenderReport render(const CompiledScene<float>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {
     using recursive::Form;
     return render_whole(
-        *recursive::begin<Form::Iterative, kNeeds<variant>, float, NoWorkCount>(scene, settings, framebuffer), settings);
+        *recursive::begin<Form::Iterative, kNeeds<variant>, float, NoWorkCount>(scene, settings, framebuffer),
+        settings);
 }
 
 }  // namespace

@@ -94,7 +94,8 @@ class PassLog : public Engine {
   public:
     explicit PassLog(const Engine& engine) : engine_(engine) {}
     [[nodiscard]] std::string name() const override { return engine_.name(); }
-    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene, const RenderSettings& settings,
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene,
+                                                       const RenderSettings& settings,
                                                        Framebuffer& framebuffer) const override {
         return std::make_unique<Session>(passes_, engine_.begin(scene, settings, framebuffer));
     }
@@ -169,7 +170,8 @@ class Adaptive : public Study {
                 {"seed", ColumnType::Count, "of all random numbers"},
                 {"rounds", ColumnType::Count, "of estimating and rendering"},
                 {"samples", ColumnType::Real, "for each pixel, on average"},
-                {"seconds", ColumnType::Real, "wall clock of the render: setup, loops, last passes; and of the estimates between them"},
+                {"seconds", ColumnType::Real,
+                 "wall clock of the render: setup, loops, last passes; and of the estimates between them"},
                 {"segments", ColumnType::Count, "rays traced"},
                 {"rmse_estimate", ColumnType::Real, "what the render itself takes its error for"},
                 {"mse", ColumnType::Real, "squared error against the reference, less the reference's noise"},

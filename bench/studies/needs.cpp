@@ -29,7 +29,8 @@ class FeatureEngine : public Engine {
   public:
     explicit FeatureEngine(BeginFunction function) : function_(function) {}
     [[nodiscard]] std::string name() const override { return "compiled for a feature"; }
-    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene, const RenderSettings& settings,
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene,
+                                                       const RenderSettings& settings,
                                                        Framebuffer& framebuffer) const override {
         return function_(scene, settings, framebuffer);
     }

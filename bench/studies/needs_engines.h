@@ -37,7 +37,7 @@ inline constexpr auto kFeatureSets = [] {
 
 /// What Engine::begin() is.
 using BeginFunction = std::unique_ptr<RenderSession> (*)(const CompiledScene<float>&, const RenderSettings&,
-                                                          Framebuffer&);
+                                                         Framebuffer&);
 
 /// By kFeatureSets. The pool's are in two files, which compile slowly.
 BeginFunction iterative_begin(std::size_t set);

@@ -12,7 +12,7 @@ struct FusedPool {
                                                 Framebuffer& framebuffer) {
         using Real = Wide<float, stdx::native_simd<float>::size()>;
         return wavefront::begin<needs, Real, NoWorkCount, Splitting::Off>(scene, settings, wavefront::PoolSettings{},
-                                                                           framebuffer);
+                                                                          framebuffer);
     }
 };
 

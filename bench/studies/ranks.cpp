@@ -207,7 +207,8 @@ class RankStudy : public Study {
             "Supposed: {:.0f} GB/s and {:.0f} us a message, {:.0f} us until a question is seen, {:.0f} us to answer "
             "it, a "
             "reduction of {} bytes a pixel over a binary tree, one step after the other. Left out: reading the scene, "
-            "starting the ranks, what a rank sets up once for all its units, and everything that makes equal processors unequal.",
+            "starting the ranks, what a rank sets up once for all its units, and everything that makes equal "
+            "processors unequal.",
             kBytesPerSecond * 1e-9, kLatency * 1e6, kLook * 1e6, kServe * 1e6, kPixelBytes));
         return summary;
     }

@@ -18,7 +18,8 @@ Rendered render_with(const CompiledScene<float>& scene) {
     settings.end_sample = 2;
     return rendered_by(scene, settings, [&](Framebuffer& framebuffer) {
         return render_whole(
-            *recursive::begin<recursive::Form::Iterative, needs, float, NoWorkCount>(scene, settings, framebuffer), settings);
+            *recursive::begin<recursive::Form::Iterative, needs, float, NoWorkCount>(scene, settings, framebuffer),
+            settings);
     });
 }
 

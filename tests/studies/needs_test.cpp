@@ -45,8 +45,9 @@ TEST(FeatureSets, MakeOneImageOfAPlainScene) {
     for (std::size_t i = 0; i < kFeatureSets.size(); ++i) {
         for (const BeginFunction begin :
              {iterative_begin(i), i < kFrontSets ? pool_begin_front(i) : pool_begin_back(i)}) {
-            const Rendered got = rendered_by(
-                scene, settings, [&](Framebuffer& framebuffer) { return render_whole(*begin(scene, settings, framebuffer), settings); });
+            const Rendered got = rendered_by(scene, settings, [&](Framebuffer& framebuffer) {
+                return render_whole(*begin(scene, settings, framebuffer), settings);
+            });
             EXPECT_EQ(got.hash(), expected) << kFeatureSets[i].name;
             if (got.report.record_bytes != 0) {
                 EXPECT_EQ(got.report.record_bytes, ray_record_bytes(kFeatureSets[i].needs, sizeof(float)));

@@ -158,7 +158,8 @@ TEST(Accumulators, SayHowMuchMemoryTheyTakeBesideTheFramebuffer) {
     const auto bytes = [&](Accumulator kind) { return make_accumulator<float>(kind, out, kThreads)->bytes(); };
     EXPECT_EQ(bytes(Accumulator::OwnedInt64), 0U);
     EXPECT_EQ(bytes(Accumulator::AtomicInt64), 0U);
-    EXPECT_EQ(bytes(Accumulator::PrivateInt64), kThreads * (3 * kPixels * sizeof(std::int64_t) + block_count_of(kPixels)));
+    EXPECT_EQ(bytes(Accumulator::PrivateInt64),
+              kThreads * (3 * kPixels * sizeof(std::int64_t) + block_count_of(kPixels)));
     EXPECT_EQ(bytes(Accumulator::OwnedPlanarInt64), 3 * kPixels * sizeof(std::int64_t));
     EXPECT_EQ(bytes(Accumulator::AtomicPlanarInt64), 3 * kPixels * sizeof(std::int64_t));
     EXPECT_EQ(bytes(Accumulator::AtomicFloat), 3 * kPixels * sizeof(float));
