@@ -43,7 +43,7 @@ class Memory(CommandTest):
         self.assertEqual(resumed.stdout.split()[-1], whole.stdout.split()[-1])
 
     def test_of_threads_accumulators_is_refused(self):
-        self.assert_refused("render", "paper", "--width", 30000, "--spp", 1, *WAVEFRONT, "--accumulator", "private",
+        self.assert_refused("render", "paper", "--width", 8000, "--spp", 1, *WAVEFRONT, "--accumulator", "private",
                             "--threads", 256, named=["--accumulator", " GB"])
 
     @needs_plain_memory
