@@ -48,12 +48,13 @@ Checkpoint::Checkpoint(const CheckpointOptions& options, cluster::Ranks& ranks) 
     if (is_kept()) signals_.emplace();
 }
 
-bool Checkpoint::keep(RenderSums& sums) {
+bool Checkpoint::keep(RenderSums& sums, const std::function<void()>& complete) {
     if (!is_kept()) return true;
     const std::chrono::duration<double> since = Clock::now() - written_;
     const std::int64_t asked =
         ranks_.greatest(2 * StopSignals::received() + (since.count() >= options_.every_s ? 1 : 0));
     if (asked != 0) {
+        complete();
         cluster::gather(ranks_, sums.framebuffer);
         write(sums);
     }

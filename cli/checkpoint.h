@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,8 +41,9 @@ class Checkpoint {
     ~Checkpoint() = default;
 
     [[nodiscard]] bool is_kept() const { return !options_.file.empty(); }
-    /// To be asked between pieces of the render: writes the file if it is time to. False when the render shall stop.
-    bool keep(RenderSums& sums);
+    /// To be asked between pieces of the render: writes the file if it is time to, after complete() has brought all
+    /// that was rendered into `sums`. False when the render shall stop.
+    bool keep(RenderSums& sums, const std::function<void()>& complete);
     /// Gathers the sums of a render that has ended, with a file or without, and writes it. Where that fails, failure()
     /// says why: the sums are there all the same.
     void finish(RenderSums& sums);

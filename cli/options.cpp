@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/output_file.h"
+#include "core/thread_limit.h"
 
 namespace raypool::cli {
 
@@ -35,12 +36,8 @@ std::uint64_t parse_seed(std::string_view text) {
 }
 
 int thread_count(int asked) {
-    constexpr int kMostThreads = 4096;
-    const int limit = std::min(omp_get_thread_limit(), kMostThreads);
     const int count = asked == 0 ? omp_get_max_threads() : asked;
-    if (count > limit)
-        throw InputError(fmt::format("{}: must be at most {}{}, got {}", asked == 0 ? "OMP_NUM_THREADS" : "--threads",
-                                     limit, limit < kMostThreads ? " (OMP_THREAD_LIMIT)" : "", count));
+    check_thread_count(count, asked == 0 ? "OMP_NUM_THREADS" : "--threads");
     return count;
 }
 

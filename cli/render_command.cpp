@@ -23,6 +23,7 @@
 #include "core/heat_map.h"
 #include "core/image_file.h"
 #include "core/json_file.h"
+#include "core/memory.h"
 #include "core/output_file.h"
 #include "core/scene_reader.h"
 #include "core/trace.h"
@@ -86,18 +87,17 @@ RenderSettings render_settings(const RenderOptions& options) {
     return settings;
 }
 
-/// Sums, the image made of them and, where asked for, second moments with their estimates and the checkpoint's bytes
-/// must fit into the machine, before anything is touched. Each rank on it has its own.
+/// Sums, the image made of them and, where asked for, costs with their image, second moments with their estimates and
+/// the checkpoint's bytes must fit into the memory that is available, before anything is touched. Each rank on this
+/// machine has its own.
 void check_memory(const Scene& scene, const RenderOptions& options, const cluster::Ranks& ranks) {
-    double pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
+    std::size_t pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
+    if (!options.cost_image.empty()) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(float);
     if (options.target_error > 0) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
     if (!options.checkpoint.file.empty()) pixel_bytes += 4 * sizeof(std::int64_t) + sizeof(std::int32_t);
-    const double bytes = static_cast<double>(scene.width * scene.height) * pixel_bytes * ranks.on_this_machine();
-    const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-    if (bytes > machine)
-        throw InputError(
-            fmt::format("--width: an image of {} x {} pixels needs {:.1f} GB of memory, this machine has {:.1f}",
-                        scene.width, scene.height, bytes * 1e-9, machine * 1e-9));
+    check_available(static_cast<std::size_t>(scene.width * scene.height) * pixel_bytes *
+                        static_cast<std::size_t>(ranks.on_this_machine()),
+                    fmt::format("--width: the sums and images of {} x {} pixels", scene.width, scene.height));
 }
 
 /// Of the code that a scene runs on, which may be compiled for more than it needs.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -57,31 +58,36 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
         const auto keep = [&] {
             sums.sample_counts = plan.sample_counts();
             sums.rounds = plan.rounds();
-            return checkpoint.keep(sums);
+            return checkpoint.keep(sums, [] {});  // a round ends merged
         };
         RenderReport report = render_adaptively(engine, scene, record.settings, plan, sums.framebuffer, keep);
         adaptive = plan.report();
         return report;
     }
-    RenderReport report;
-    report.threads.resize(static_cast<std::size_t>(record.settings.threads));
+    std::unique_ptr<RenderSession> session;
     for (const SampleRange& gap : gaps(sums.ranges, record.settings.end_sample)) {
         RenderSettings settings = record.settings;
         settings.first_sample = std::max(gap.first, settings.first_sample);
         settings.end_sample = gap.end;
         if (settings.first_sample >= settings.end_sample) continue;
+        if (session == nullptr) session = engine.begin(scene, settings, sums.framebuffer);
         if (!checkpoint.is_kept()) {
-            report.add(engine.render(scene, settings, sums.framebuffer));
+            session->add({settings.first_sample, settings.end_sample, nullptr});
             sums.ranges = with_range(std::move(sums.ranges), {settings.first_sample, settings.end_sample});
             continue;
         }
-        report.add(render_in_pieces(engine, scene, settings, sums.framebuffer, [&](const SampleRange& range) {
+        render_in_pieces(*session, settings, [&](const SampleRange& range) {
             sums.ranges = with_range(std::move(sums.ranges), range);
-            return checkpoint.keep(sums);
-        }));
+            return checkpoint.keep(sums, [&] { session->merge(); });
+        });
         if (checkpoint.stopped_by() != 0) break;
     }
-    return report;
+    if (session == nullptr) {
+        RenderReport nothing;
+        nothing.threads.resize(static_cast<std::size_t>(record.settings.threads));
+        return nothing;
+    }
+    return session->finish();
 }
 
 template <class Scalar>
@@ -108,9 +114,14 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
     }
     Progress progress;
     record.settings.progress = &progress;
-    progress.paths = compiled.pixel_count() * sums.sample_count();
+    progress.paths = is_adaptive
+                         ? std::accumulate(sums.sample_counts.begin(), sums.sample_counts.end(), std::int64_t{0})
+                         : compiled.pixel_count() * sums.sample_count();
+    progress.before = progress.paths.load();
     {
-        const ProgressBar bar(progress, path_count(compiled, record.settings), {"M paths/s", 1e-6}, is_quiet);
+        // How many samples an adaptive render will take is not known.
+        const std::int64_t total = is_adaptive ? 0 : path_count(compiled, record.settings);
+        const ProgressBar bar(progress, total, {"M paths/s", 1e-6}, is_quiet);
         const std::unique_ptr<Engine> engine = make_engine(record, ranks);
         record.report = render_missing(*engine, compiled, record, sums, record.adaptive, checkpoint);
     }

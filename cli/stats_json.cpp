@@ -76,6 +76,7 @@ json stats_json(const RenderRecord& record) {
                 {{"read", record.read_s},
                  {"compile", record.compile_s},
                  {"render", report.seconds},
+                 {"setup", report.setup_s},  // of render
                  {"write", record.write_s},
                  {"total", record.total_s}}},
                {"paths", report.paths()},

@@ -115,22 +115,18 @@ class AdaptivePlan {
 /// Renders into a framebuffer that keeps second moments until the plan is satisfied. After each round, go_on() says
 /// whether to; what it sees, the framebuffer and the plan, is what a render can go on from.
 template <class Scalar, class GoOn>
-RenderReport render_adaptively(const Engine& engine, const CompiledScene<Scalar>& scene, RenderSettings settings,
+RenderReport render_adaptively(const Engine& engine, const CompiledScene<Scalar>& scene, const RenderSettings& settings,
                                AdaptivePlan& plan, Framebuffer& framebuffer, GoOn go_on) {
-    RenderReport report;
+    const std::unique_ptr<RenderSession> session = engine.begin(scene, settings, framebuffer);
     for (std::vector<SamplePass> passes = plan.next(framebuffer); !passes.empty(); passes = plan.next(framebuffer)) {
-        for (const SamplePass& pass : passes) {
-            settings.first_sample = pass.first;
-            settings.end_sample = pass.end;
-            settings.pixels = &pass.pixels;
-            report.add(engine.render(scene, settings, framebuffer));
-        }
+        for (const SamplePass& pass : passes) session->add({pass.first, pass.end, &pass.pixels});
+        session->merge();
         if (!go_on()) {
             plan.estimate(framebuffer);
             break;
         }
     }
-    return report;
+    return session->finish();
 }
 
 /// Until the RMSE is known to be at most target_error, or every pixel has settings.end_sample samples.

@@ -36,6 +36,7 @@ class Compiler {
         add_surfaces();
         add_spheres();
         add_flats();
+        CompiledScene<Scalar>::for_each_table(out_, [](auto& table) { table.shrink_to_fit(); });
         return std::move(out_);
     }
 
@@ -48,10 +49,10 @@ class Compiler {
         if (scene_.width * scene_.height > kMostPixels)
             throw InputError(
                 fmt::format("image of {} x {}: must have at most 2^32 pixels", scene_.width, scene_.height));
-        constexpr std::size_t kMostPrimitives = std::size_t{1} << 24U;  // whole in a float
+        static_assert(kMostBoxes <= std::size_t{1} << 24U, "an id is whole in a float");
         const std::size_t count = scene_.spheres.size() + scene_.quads.size() + scene_.planes.size();
-        if (count > kMostPrimitives)
-            throw InputError(fmt::format("scene of {} shapes: must have at most {}", count, kMostPrimitives));
+        if (count > kMostBoxes)
+            throw InputError(fmt::format("scene of {} shapes: must have at most {}", count, kMostBoxes));
     }
 
     void add_textures() {
@@ -271,18 +272,13 @@ class Compiler {
     CompiledScene<Scalar> out_;
 };
 
-template <class T>
-std::size_t bytes_of(const std::vector<T>& v) {
-    return v.size() * sizeof(T);
-}
-
 }  // namespace
 
 template <class Scalar>
 std::size_t CompiledScene<Scalar>::bytes() const {
-    return sizeof(*this) + bytes_of(surfaces) + bytes_of(textures) + bytes_of(flats) + bytes_of(images) +
-           bytes_of(texels) + bytes_of(large_spheres) + bytes_of(planes) + bytes_of(sphere_tree.nodes) +
-           bytes_of(sphere_tree.blocks) + bytes_of(quad_tree.nodes) + bytes_of(quad_tree.blocks);
+    std::size_t bytes = sizeof(*this);
+    for_each_table(*this, [&](const auto& table) { bytes += table.capacity() * sizeof(table[0]); });
+    return bytes;
 }
 
 template <class Scalar>

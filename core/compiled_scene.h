@@ -134,7 +134,27 @@ struct CompiledScene {
     }
 
     [[nodiscard]] std::int64_t pixel_count() const { return width * height; }
-    [[nodiscard]] std::size_t bytes() const;  ///< of all tables
+    [[nodiscard]] std::size_t bytes() const;  ///< of all tables, with this
+
+    /// Calls visit(std::vector&) for every table: the one list of them.
+    template <class Self, class Visit>
+    static void for_each_table(Self& self, Visit visit) {
+        visit(self.surfaces);
+        visit(self.textures);
+        visit(self.flats);
+        visit(self.images);
+        visit(self.texels);
+        visit(self.large_spheres);
+        visit(self.planes);
+        const auto visit_tree = [&](auto& tree) {
+            visit(tree.nodes);
+            visit(tree.blocks);
+        };
+        visit_tree(self.sphere_tree);
+        visit_tree(self.quad_tree);
+        visit_tree(self.sphere_stream_tree);
+        visit_tree(self.quad_stream_tree);
+    }
 };
 
 /// Refuses (InputError) an image of more than 2^32 pixels, or more primitives than ids. Shapes that coincide count once

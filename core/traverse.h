@@ -42,9 +42,10 @@ struct NoWorkCount {
     RAYPOOL_INLINE void begin_segment() {}
 };
 
-/// Deepest tree: 40 levels of heuristic splits and 24 of halves (bvh.cpp), each leaving width - 1 nodes behind.
+/// The deepest tree's: a node takes itself from the stack and puts up to `width` children there, so each level of nodes
+/// leaves width - 1 behind. A level of a wide tree stands for one or more of the binary one.
 template <int width>
-inline constexpr int kTraversalStack = (40 + 24 + 1) * (width - 1) + 1;
+inline constexpr int kTraversalStack = kMostTreeLevels*(width - 1) + 1;
 
 /// One ray in every lane, with what the box test and the shapes need of it.
 template <class Real>

@@ -70,7 +70,9 @@ constexpr SceneNeeds kNeeds{false, false, true, false, false,
 template <NaiveVariant variant>
 RenderReport render(const CompiledScene<float>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {
     using recursive::Form;
-    return recursive::render<Form::Iterative, kNeeds<variant>, float, NoWorkCount>(scene, settings, framebuffer);
+    return render_whole(
+        *recursive::begin<Form::Iterative, kNeeds<variant>, float, NoWorkCount>(scene, settings, framebuffer),
+        settings);
 }
 
 }  // namespace

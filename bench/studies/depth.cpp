@@ -158,7 +158,7 @@ class Depth : public Study {
                 {"depth", ColumnType::Count, "most segments of a path"},
                 {"paths", ColumnType::Count, "samples of all pixels"},
                 {"segments", ColumnType::Count, "rays traced"},
-                {"seconds", ColumnType::Real, "wall clock of the parallel region"},
+                {"seconds", ColumnType::Real, "wall clock of the render: setup, loops, last pass"},
                 {"ns_per_segment", ColumnType::Real, "nanoseconds of a thread for a segment"},
                 {"pool_bytes", ColumnType::Count, "of all pools, with their scratch memory"},
                 {"alive", ColumnType::Real, "part of the paths that would go on after so many segments"},

@@ -11,6 +11,7 @@
 #include "bench/studies/replay_ways.h"
 #include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
+#include "core/first_exception.h"
 #include "wavefront/settings.h"
 
 namespace raypool::studies {
@@ -199,22 +200,26 @@ class ReplayStudy : public Study {
                                                                                     : own);
             const std::vector<int> replayed = thread_counts(most);
             std::vector<Row> filled(replayed.size());
+            FirstException failure;
 #pragma omp parallel for schedule(dynamic) num_threads(core_count())
             for (std::size_t i = 0; i < replayed.size(); ++i) {
-                const int threads = replayed[i];
-                const Replayed counted = tests.replay(threads, {});
-                const Replayed timed = time.replay(threads, {});
-                filled[i] =
-                    sparse_row(all, {{"kind", "replayed"},
-                                     {"group", grouped.group},
-                                     {"way", way.name},
-                                     {"threads", threads},
-                                     {"efficiency_tests", counted.efficiency()},
-                                     {"efficiency_time", timed.efficiency()},
-                                     {"efficiency_costs", time.replay(threads, openmp.at(threads)).efficiency()},
-                                     {"efficiency_bound", timed.total() / (threads * time.bound(threads))},
-                                     {"max_over_mean", max_over_mean(counted.work)}});
+                failure.run([&] {
+                    const int threads = replayed[i];
+                    const Replayed counted = tests.replay(threads, {});
+                    const Replayed timed = time.replay(threads, {});
+                    filled[i] =
+                        sparse_row(all, {{"kind", "replayed"},
+                                         {"group", grouped.group},
+                                         {"way", way.name},
+                                         {"threads", threads},
+                                         {"efficiency_tests", counted.efficiency()},
+                                         {"efficiency_time", timed.efficiency()},
+                                         {"efficiency_costs", time.replay(threads, openmp.at(threads)).efficiency()},
+                                         {"efficiency_bound", timed.total() / (threads * time.bound(threads))},
+                                         {"max_over_mean", max_over_mean(counted.work)}});
+                });
             }
+            failure.rethrow();
             rows.insert(rows.end(), filled.begin(), filled.end());
         }
         return rows;

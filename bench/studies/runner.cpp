@@ -139,7 +139,7 @@ bool run_study(const Study& study, const StudyOptions& options, const fs::path& 
         run["started"].push_back(now());
         write_json(folder / "run.json", run);
     }
-    if (control.progress != nullptr) control.progress->paths = data.run_count();
+    if (control.progress != nullptr) control.progress->before = control.progress->paths = data.run_count();
 
     // Repeats outermost.
     int repeats = 0;

@@ -200,7 +200,7 @@ class SpeedAccuracy : public Study {
                 {"width", ColumnType::Count, "image width, pixels"},
                 {"spp", ColumnType::Count, "samples for each pixel"},
                 {"seed", ColumnType::Count, "of all random numbers of the image"},
-                {"seconds", ColumnType::Real, "wall clock of the parallel region"},
+                {"seconds", ColumnType::Real, "wall clock of the render: setup, loops, last pass"},
                 {"segments", ColumnType::Count, "rays traced"},
                 {"mse", ColumnType::Signed, "squared error of linear radiance, less the noise of the reference"},
                 {"reference_noise", ColumnType::Real, "what was taken off"},

@@ -314,7 +314,7 @@ class CheckpointTest(CommandTest):
     def test_memory_that_is_not_there_is_an_error(self):
         result = self.run_command("render", "paper", "--width", 20000, "--spp", 1, "--threads", 1,
                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30)))
-        self.assert_one_line(result, 1, "memory")
+        self.assert_one_line(result, 2, "memory")
 
     def test_parts_in_any_order_are_the_whole(self):
         expected = self.whole()
