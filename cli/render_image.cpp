@@ -30,13 +30,12 @@ std::unique_ptr<Engine> make_engine(const RenderRecord& record, cluster::Ranks& 
     return ranks.count() == 1 ? std::move(own) : std::make_unique<cluster::RankEngine>(std::move(own), ranks);
 }
 
-/// All that fixes the image. Threads, engine and pool do not.
+/// All that fixes the samples. Threads, engine and pool do not, nor does how many there are.
 ImageKey image_key(const Scene& scene, const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
     return {{"scene", scene_hash(scene)},
             {"width", fmt::to_string(scene.width)},
             {"height", fmt::to_string(scene.height)},
-            {"spp", fmt::to_string(record.spp)},
             {"depth", fmt::to_string(settings.depth)},
             {"split_depth", fmt::to_string(settings.split_depth)},
             {"seed", fmt::to_string(settings.seed)},
@@ -53,14 +52,15 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
     if (record.target_error > 0) {
         std::vector<std::int32_t> counts = sums.sample_counts;
         if (counts.empty()) counts.resize(static_cast<std::size_t>(scene.pixel_count()));
-        AdaptivePlan plan(record.target_error, record.settings.end_sample, std::move(counts), sums.rounds);
+        AdaptivePlan plan({record.target_error, scene.max_radiance, record.settings.end_sample}, std::move(counts),
+                          sums.rounds);
         const auto keep = [&] {
             sums.sample_counts = plan.sample_counts();
             sums.rounds = plan.rounds();
             return checkpoint.keep(sums);
         };
         RenderReport report = render_adaptively(engine, scene, record.settings, plan, sums.framebuffer, keep);
-        adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds()};
+        adaptive = plan.report();
         return report;
     }
     RenderReport report;
@@ -95,6 +95,7 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
 
     const bool is_adaptive = record.target_error > 0;
     RenderSums sums{image_key(scene, record),
+                    record.spp,
                     {},
                     {},
                     0,
@@ -117,7 +118,7 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
         record.ranks = cluster::gather(ranks, record.report);
         record.report = cluster::joined(record.ranks);
     }
-    checkpoint.write(sums);
+    checkpoint.finish(sums);
     record.settings.progress = nullptr;
     record.hash = sums.framebuffer.hash();
     record.samples_done = is_adaptive ? std::llround(record.adaptive.mean_samples()) : sums.sample_count();

@@ -42,7 +42,8 @@ void clear(Framebuffer& framebuffer, const std::vector<std::uint32_t>* pixels) {
     for (std::size_t i = 0; i < chosen_count(framebuffer, pixels); ++i) {
         const std::size_t pixel = chosen(pixels, i);
         std::fill_n(framebuffer.sums().begin() + static_cast<std::ptrdiff_t>(3 * pixel), 3, 0);
-        if (framebuffer.has_squares()) framebuffer.squares()[pixel] = 0;
+        if (framebuffer.has_squares())
+            std::fill_n(framebuffer.squares().begin() + static_cast<std::ptrdiff_t>(2 * pixel), 2, 0);
     }
 }
 
@@ -51,18 +52,18 @@ void sum_everywhere(Ranks& ranks, Framebuffer& framebuffer, const std::vector<st
     for (std::size_t begin = 0; begin < count; begin += kChunkPixels) {
         const std::size_t end = std::min(begin + kChunkPixels, count);
         std::vector<std::int64_t> packed;
-        packed.reserve(4 * (end - begin));
+        packed.reserve(5 * (end - begin));
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t pixel = chosen(pixels, i);
             for (std::size_t c = 0; c < 3; ++c) packed.push_back(framebuffer.sums()[3 * pixel + c]);
-            packed.push_back(framebuffer.squares()[pixel]);
+            for (std::size_t c = 0; c < 2; ++c) packed.push_back(framebuffer.squares()[2 * pixel + c]);
         }
         ranks.sum_everywhere(packed);
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t pixel = chosen(pixels, i);
-            const std::int64_t* sums = &packed[4 * (i - begin)];
+            const std::int64_t* sums = &packed[5 * (i - begin)];
             std::copy_n(sums, 3, &framebuffer.sums()[3 * pixel]);
-            framebuffer.squares()[pixel] = sums[3];
+            std::copy_n(sums + 3, 2, &framebuffer.squares()[2 * pixel]);
         }
     }
 }

@@ -84,12 +84,12 @@ RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& se
                     const std::int64_t pixel = y * scene.width + x;
                     if (!chosen.contains(pixel)) continue;
                     FixedRgb sum{};
-                    std::int64_t square = 0;
+                    FixedSquare square;
                     cost.start(tracer);
                     for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s) {
                         const FixedRgb& sample = tracer.template sample<form>(x, y, s);
                         for (int i = 0; i < 3; ++i) sum[i] += sample[i];
-                        if (has_squares) square += tracer.square(sample);
+                        if (has_squares) square.add(tracer.square(sample));
                     }
                     cost.stop(tracer, pixel);
                     framebuffer.add(pixel, sum);

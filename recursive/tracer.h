@@ -70,7 +70,7 @@ class Tracer {
 
     [[nodiscard]] std::int64_t segments() const { return segments_; }
     [[nodiscard]] const Work& work() const { return work_; }
-    [[nodiscard]] std::int64_t square(const FixedRgb& sample) const { return converter_.square(sample); }
+    [[nodiscard]] FixedSquare square(const FixedRgb& sample) const { return converter_.square(sample); }
     [[nodiscard]] const SampleAudit& audit() const { return converter_.audit(); }
     [[nodiscard]] std::uintptr_t deepest_stack() const { return deepest_stack_; }
 

@@ -29,7 +29,7 @@ class AccumulatorBase {
 
 /// Where the three sums of a pixel are: side by side, as in the framebuffer, or each in a plane of its own. To compare
 /// them is the paper's "interleaved against three planar framebuffers". The sums of squares, where the framebuffer
-/// keeps them (null elsewhere), are a plane always.
+/// keeps them (null elsewhere), are apart from both, two digits a pixel.
 struct Interleaved {
     std::int64_t* sums;
     std::int64_t* squares;
@@ -63,7 +63,12 @@ void add_integers(const Layout& layout, const Deposits<Scalar>& deposits, Sample
         const FixedRgb fixed = converter.convert<Scalar>(deposits.radiance(i));
         for (int k = 0; k < 3; ++k) add(layout.at(deposits.pixel(i), k), fixed[static_cast<std::size_t>(k)]);
         // A path that is not split deposits once, so that a deposit is a whole sample.
-        if (layout.squares != nullptr) add(layout.squares[deposits.pixel(i)], converter.square(fixed));
+        if (layout.squares != nullptr) {
+            const FixedSquare square = converter.square(fixed);
+            std::int64_t* digits = layout.squares + 2 * std::size_t{deposits.pixel(i)};
+            add(digits[0], square.low);
+            add(digits[1], square.high);
+        }
     }
 }
 

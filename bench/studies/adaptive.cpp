@@ -157,8 +157,8 @@ class Adaptive : public Study {
                 {"seconds", ColumnType::Real, "wall clock of the parallel regions and of the estimates between them"},
                 {"segments", ColumnType::Count, "rays traced"},
                 {"rmse_estimate", ColumnType::Real, "what the render itself takes its error for"},
-                {"mse", ColumnType::Real, "squared error against the reference, less the reference's noise"},
-                {"shift", ColumnType::Real, "mean of the image over that of the reference, less 1"},
+                {"mse", ColumnType::Signed, "squared error against the reference, less the reference's noise"},
+                {"shift", ColumnType::Signed, "mean of the image over that of the reference, less 1"},
                 {"load", ColumnType::Real, "segments of the busiest threads of all passes over fair shares"},
                 {"hash", ColumnType::Text, "of the sums"}};
     }

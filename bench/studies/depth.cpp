@@ -162,7 +162,7 @@ class Depth : public Study {
                 {"ns_per_segment", ColumnType::Real, "nanoseconds of a thread for a segment"},
                 {"pool_bytes", ColumnType::Count, "of all pools, with their scratch memory"},
                 {"alive", ColumnType::Real, "part of the paths that would go on after so many segments"},
-                {"lost_light", ColumnType::Real, "part of the light at the deepest limit that is cut off"},
+                {"lost_light", ColumnType::Signed, "part of the light at the deepest limit that is cut off"},
                 {"paired_rmse", ColumnType::Real, "linear radiance, this image against the deepest"},
                 {"lost_rmse", ColumnType::Real, "the same of the expected images, free of noise"},
                 {"noise_rmse", ColumnType::Real, "linear radiance, of the deepest image with 100 samples a pixel"},

@@ -137,8 +137,8 @@ class RankStudy : public Study {
             {"ranks", ColumnType::Count, "ranks of one thread, of one speed"},
             {"units", ColumnType::Count, "of work that are handed out"},
             {"ideal_s", ColumnType::Real, "an equal share of the work, s"},
-            {"last_units_s", ColumnType::Real, "lost because some have nothing while others end their last unit, s"},
-            {"questions_s", ColumnType::Real, "lost to asking for units and starting them, s"},
+            {"last_units_s", ColumnType::Signed, "lost because some have nothing while others end their last unit, s"},
+            {"questions_s", ColumnType::Signed, "lost to asking for units and starting them, s"},
             {"reduction_s", ColumnType::Real, "of the sums, s"},
             {"efficiency", ColumnType::Real, "ideal over all of it"},
             {"slow_efficiency", ColumnType::Real, "the same, with one rank at a quarter of the speed"}};

@@ -130,8 +130,8 @@ class ReplayStudy : public Study {
             {"processor_balance", ColumnType::Real, "real: mean over largest processor time of the render's threads"},
             {"fetch_ns", ColumnType::Real, "openmp: of a chunk, to the thread that fetches it"},
             {"barrier_ns", ColumnType::Real, "openmp: of a barrier"},
-            {"segment_ns", ColumnType::Real, "model: recursive engine, of a segment by itself"},
-            {"test_ns", ColumnType::Real, "model: of each box or primitive test"},
+            {"segment_ns", ColumnType::Signed, "model: recursive engine, of a segment by itself"},
+            {"test_ns", ColumnType::Signed, "model: of each box or primitive test"},
             {"fit_error", ColumnType::Real, "model: standard deviation of lines around it, over the mean line"},
             {"hash", ColumnType::Text, "real: of the sums of the image"}};
     }

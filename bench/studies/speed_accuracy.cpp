@@ -202,9 +202,9 @@ class SpeedAccuracy : public Study {
                 {"seed", ColumnType::Count, "of all random numbers of the image"},
                 {"seconds", ColumnType::Real, "wall clock of the parallel region"},
                 {"segments", ColumnType::Count, "rays traced"},
-                {"mse", ColumnType::Real, "squared error of linear radiance, less the noise of the reference"},
+                {"mse", ColumnType::Signed, "squared error of linear radiance, less the noise of the reference"},
                 {"reference_noise", ColumnType::Real, "what was taken off"},
-                {"bias_squared", ColumnType::Real,
+                {"bias_squared", ColumnType::Signed,
                  "squared error that more samples do not mend, from pairs of images that share random numbers"},
                 {"bias_error", ColumnType::Real, "standard error of that"},
                 {"hash", ColumnType::Text, "of the sums of the image"}};
