@@ -10,12 +10,14 @@
 #include "bench/accuracy/advise.h"
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/print.h"
 #include "cli/progress_bar.h"
-#include "cli/stats_json.h"
 #include "core/environment.h"
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/output_file.h"
 #include "core/scene_reader.h"
+#include "core/text.h"
 
 namespace raypool::cli {
 
@@ -37,18 +39,8 @@ struct AdviseCommand {
     bool is_quiet = false;
 };
 
-/// As a shell reads it.
-std::string quoted(const std::string& text) {
-    if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-") ==
-        std::string::npos)
-        return text;
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? "'\\''" : std::string(1, c);
-    return result + "'";
-}
-
 std::string render_line(const AdviseCommand& command, const Offer& offer, int threads) {
-    return fmt::format("raypool render {}{} --spp {} {} --threads {}", quoted(command.scene),
+    return fmt::format("raypool render {}{} --spp {} {} --threads {}", shell_word(command.scene),
                        command.width == 0 ? "" : fmt::format(" --width {}", command.width), offer.spp,
                        render_flags(offer.pilot.configuration), threads);
 }
@@ -60,31 +52,31 @@ std::string bias_text(const Estimate& bias) {
 }
 
 void print_offer(const Offer& offer) {
-    fmt::print("RMSE {:.3g} ({:.3g} to {:.3g}), of which bias {}; {:.3g} s ({:.3g} to {:.3g})\n", offer.error,
-               offer.error_interval.low, offer.error_interval.high, bias_text(offer.pilot.bias), offer.seconds,
-               offer.seconds_interval.low, offer.seconds_interval.high);
+    print("RMSE {:.3g} ({:.3g} to {:.3g}), of which bias {}; {:.3g} s ({:.3g} to {:.3g})\n", offer.error,
+          offer.error_interval.low, offer.error_interval.high, bias_text(offer.pilot.bias), offer.seconds,
+          offer.seconds_interval.low, offer.seconds_interval.high);
 }
 
-void print(const Advice& advice, const AdviseCommand& command, int threads) {
-    fmt::print("{}: needs {}\n", command.scene,
-               advice.needs.empty() ? "nothing" : fmt::format("{}", fmt::join(advice.needs, ", ")));
-    fmt::print("tried at {} x {} with {} seeds, {} thread{}, and the best {} at {} x {}\n\n", advice.pilot_width,
-               advice.pilot_height, advice.pilot_seeds, threads, threads == 1 ? "" : "s", advice.offers.size(),
-               advice.width, advice.height);
-    fmt::print("{:<44} {:>12} {:>11} {:>11} {:>13}\n", "what one change does", "bias (RMSE)", "time of", "MSE of",
-               "time to");
-    fmt::print("{:<44} {:>12} {:>11} {:>11} {:>13}\n", "", "", "a sample", "a sample", "equal noise");
+void print_advice(const Advice& advice, const AdviseCommand& command, int threads) {
+    print("{}: needs {}\n", command.scene,
+          advice.needs.empty() ? "nothing" : fmt::format("{}", fmt::join(advice.needs, ", ")));
+    print("tried at {} x {} with {} seeds, {} thread{}, and the best {} at {} x {}\n\n", advice.pilot_width,
+          advice.pilot_height, advice.pilot_seeds, threads, threads == 1 ? "" : "s", advice.offers.size(), advice.width,
+          advice.height);
+    print("{:<44} {:>12} {:>11} {:>11} {:>13}\n", "what one change does", "bias (RMSE)", "time of", "MSE of",
+          "time to");
+    print("{:<44} {:>12} {:>11} {:>11} {:>13}\n", "", "", "a sample", "a sample", "equal noise");
     for (const Simplification& s : advice.simplifications)
-        fmt::print("{:<44} {:>12} {:>11.2f} {:>11.2f} {:>13.2f}\n", s.text, bias_text(s.bias), s.time, s.noise,
-                   s.time * s.noise);
-    fmt::print("\n");
+        print("{:<44} {:>12} {:>11.2f} {:>11.2f} {:>13.2f}\n", s.text, bias_text(s.bias), s.time, s.noise,
+              s.time * s.noise);
+    print("\n");
     for (std::size_t i = 1; i < advice.offers.size(); ++i) {
-        fmt::print("next best: {}, {} spp: ", to_string(advice.offers[i].pilot.configuration), advice.offers[i].spp);
+        print("next best: {}, {} spp: ", to_string(advice.offers[i].pilot.configuration), advice.offers[i].spp);
         print_offer(advice.offers[i]);
     }
-    fmt::print("predicted: ");
+    print("predicted: ");
     print_offer(advice.offers.front());
-    fmt::print("{}\n", render_line(command, advice.offers.front(), threads));
+    print("{}\n", render_line(command, advice.offers.front(), threads));
 }
 
 nlohmann::json bias_json(const Estimate& bias) {
@@ -140,8 +132,8 @@ void advise(const AdviseCommand& command) {
     }
     if (!command.json.empty()) write_json(command.json, advice_json(advice, command, options.threads));
     if (command.is_quiet) return;
-    print(advice, command, options.threads);
-    if (!command.json.empty()) fmt::print("{}\n", command.json);
+    print_advice(advice, command, options.threads);
+    if (!command.json.empty()) print("{}\n", command.json);
 }
 
 }  // namespace

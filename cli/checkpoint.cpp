@@ -13,6 +13,7 @@
 #include "cluster/exchange.h"
 #include "core/error.h"
 #include "core/output_file.h"
+#include "core/text.h"
 
 namespace raypool::cli {
 
@@ -37,10 +38,7 @@ void ask_to_stop(int signal) {
 }  // namespace
 
 void check(const CheckpointOptions& options) {
-    if (options.file.empty()) {
-        if (options.is_resumed) throw InputError("--resume: needs --checkpoint FILE, the file to go on from");
-        return;
-    }
+    if (options.file.empty()) return;
     check_writable(options.file);
     if (!options.is_resumed && std::filesystem::exists(options.file))
         throw InputError(
@@ -102,7 +100,7 @@ void Checkpoint::prepare_last_words(const RenderSums& sums) {
                                                         : fmt::format("{} rounds", sums.rounds);
     next = fmt::format(
         "raypool: asked to stop, or a rank has ended; {} holds {}: the same command with --resume goes on from there\n",
-        options_.file, held);
+        printable(options_.file), held);
     last_words = &next;
 }
 

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/print.h"
 #include "core/image_diff.h"
 #include "core/image_file.h"
 #include "core/output_file.h"
@@ -21,10 +22,10 @@ struct DiffOptions {
 };
 
 void print_bias(const TileBias& bias) {
-    fmt::print("tile bias          z = {:.2f} in columns {} to {}, lines {} to {}, where A - B is {:.3g} on average;\n",
-               bias.z, bias.x_begin, bias.x_end - 1, bias.y_begin, bias.y_end - 1, bias.difference);
-    fmt::print("                   {} tile{}, of which chance passes |z| = {:.2f} once in 100 times\n", bias.tile_count,
-               bias.tile_count == 1 ? "" : "s", bias.z_limit);
+    print("tile bias          z = {:.2f} in columns {} to {}, lines {} to {}, where A - B is {:.3g} on average;\n",
+          bias.z, bias.x_begin, bias.x_end - 1, bias.y_begin, bias.y_end - 1, bias.difference);
+    print("                   {} tile{}, of which chance passes |z| = {:.2f} once in 100 times\n", bias.tile_count,
+          bias.tile_count == 1 ? "" : "s", bias.z_limit);
 }
 
 int diff(const DiffOptions& options) {
@@ -35,19 +36,19 @@ int diff(const DiffOptions& options) {
     const Image a = read_image(options.a);
     const Image b = read_image(options.b);
     const ImageDiff figures = compare_images(a, b);
-    fmt::print("pixels that differ {} of {}\n", figures.differing_pixels, a.width * a.height);
-    fmt::print("MSE                {:.6g}\n", figures.mse);
-    fmt::print("RMSE               {:.6g}\n", figures.rmse);
-    fmt::print("relMSE             {:.6g}\n", figures.rel_mse);
-    fmt::print("PSNR               {:.2f} dB\n", figures.psnr);
-    fmt::print("largest difference {:.6g}\n", figures.max_abs);
-    fmt::print("largest ULP        {}\n", figures.max_ulp);
-    fmt::print("mean of A          {:.8g} {:.8g} {:.8g}\n", figures.mean_a[0], figures.mean_a[1], figures.mean_a[2]);
-    fmt::print("mean of B          {:.8g} {:.8g} {:.8g}\n", figures.mean_b[0], figures.mean_b[1], figures.mean_b[2]);
+    print("pixels that differ {} of {}\n", figures.differing_pixels, a.width * a.height);
+    print("MSE                {:.6g}\n", figures.mse);
+    print("RMSE               {:.6g}\n", figures.rmse);
+    print("relMSE             {:.6g}\n", figures.rel_mse);
+    print("PSNR               {:.2f} dB\n", figures.psnr);
+    print("largest difference {:.6g}\n", figures.max_abs);
+    print("largest ULP        {}\n", figures.max_ulp);
+    print("mean of A          {:.8g} {:.8g} {:.8g}\n", figures.mean_a[0], figures.mean_a[1], figures.mean_a[2]);
+    print("mean of B          {:.8g} {:.8g} {:.8g}\n", figures.mean_b[0], figures.mean_b[1], figures.mean_b[2]);
     print_bias(greatest_tile_bias(a, b));
     if (!options.output.empty()) {
         write_image(options.output, false_colour(a, b), {});
-        fmt::print("{}\n", options.output);
+        print("{}\n", options.output);
     }
     return figures.differing_pixels == 0 ? 0 : 1;
 }

@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/print.h"
 #include "core/error.h"
 #include "core/image_file.h"
 #include "core/output_file.h"
@@ -74,10 +75,10 @@ int merge(const MergeOptions& options) {
     if (!options.checkpoint.empty()) write_sums(options.checkpoint, sum);
     const std::vector<SampleRange> missing = gaps(sum.ranges, spp);
     for (const SampleRange& gap : missing)
-        fmt::print(stderr, "raypool: samples {} to {} are missing (--samples {}:{})\n", gap.first, gap.end, gap.first,
-                   gap.end);
+        print(stderr, "raypool: samples {} to {} are missing (--samples {}:{})\n", gap.first, gap.end, gap.first,
+              gap.end);
     if (!options.is_quiet)
-        fmt::print("{} of {} samples a pixel\nhash {}\n", sum.sample_count(), spp, sum.framebuffer.hash());
+        print("{} of {} samples a pixel\nhash {}\n", sum.sample_count(), spp, sum.framebuffer.hash());
     return missing.empty() ? 0 : 1;
 }
 

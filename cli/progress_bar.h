@@ -1,7 +1,9 @@
-/// A progress bar on the terminal: part done, rate, time left. Says nothing when stderr is not a terminal.
+/// A progress bar on the terminal: part done, rate, time left. Says nothing where stderr is no terminal, or one that
+/// knows no escapes (TERM is not set, or dumb).
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <thread>
 
 #include "core/engine.h"
@@ -21,5 +23,10 @@ class ProgressBar {
   private:
     std::jthread thread_;
 };
+
+/// What is shown after `seconds`, in fewer than `columns` characters, so that no terminal wraps it: what has no room is
+/// left out, the rate first, then the time left, and the bar takes what they leave.
+std::string progress_line(std::int64_t done, std::int64_t total, const ProgressBar::Unit& unit, double seconds,
+                          std::size_t columns);
 
 }  // namespace raypool::cli

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/pool_options.h"
+#include "cli/print.h"
 #include "cli/render_image.h"
 #include "cli/render_summary.h"
 #include "cli/stats_json.h"
@@ -19,9 +21,11 @@
 #include "core/error.h"
 #include "core/heat_map.h"
 #include "core/image_file.h"
+#include "core/json_file.h"
 #include "core/output_file.h"
 #include "core/scene_reader.h"
 #include "core/trace.h"
+#include "wavefront/setting_names.h"
 
 namespace raypool::cli {
 
@@ -42,10 +46,10 @@ struct RenderOptions {
     std::string seed = "0";
     std::string sampler = "independent";
     bool roulette = false;
-    std::string samples;
+    std::optional<std::string> samples;
     double target_error = 0;
     int threads = 0;  ///< 0: OpenMP's
-    std::string schedule;
+    std::optional<std::string> schedule;
     std::string grain = "line";
     std::string precision = "float";
     bool count_work = false;
@@ -62,8 +66,8 @@ Cost cost_of(const std::string& word) {
 RenderSettings render_settings(const RenderOptions& options) {
     RenderSettings settings;
     settings.end_sample = options.spp;
-    if (!options.samples.empty()) {
-        const SampleRange range = parse_samples(options.samples, options.spp);
+    if (options.samples) {
+        const SampleRange range = parse_samples(*options.samples, options.spp);
         settings.first_sample = range.first;
         settings.end_sample = range.end;
     }
@@ -73,7 +77,8 @@ RenderSettings render_settings(const RenderOptions& options) {
     settings.sampler = parse_sampler(options.sampler);
     settings.roulette = options.roulette;
     settings.threads = thread_count(options.threads);
-    settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
+    if (options.engine != "wavefront" || options.pool.scope != to_string(wavefront::PoolScope::Shared))
+        settings.schedule = options.schedule ? parse_schedule(*options.schedule) : default_schedule();
     settings.grain = parse_grain(options.grain);
     settings.count_work = options.count_work || (!options.cost_image.empty() && cost_of(options.cost) == Cost::Tests);
     settings.log_rounds = options.count_work;
@@ -105,7 +110,8 @@ ImageAttributes image_attributes(const RenderRecord& record) {
                                {"raypool.samples_done", fmt::to_string(record.samples_done)}};
     const nlohmann::json settings = settings_json(record);
     for (const auto& [key, value] : settings.items())
-        attributes["raypool." + key] = value.is_string() ? value.get<std::string>() : value.dump();
+        attributes["raypool." + key] =
+            value.is_string() ? value.get<std::string>() : json_text(value, JsonLayout::OneLine);
     return attributes;
 }
 
@@ -144,8 +150,6 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     record.target_error = options.target_error;
     if (options.target_error > 0 && options.spp < 2)
         throw InputError("--spp: must be at least 2 with --target-error: one sample does not tell its error");
-    if (options.target_error > 0 && !options.samples.empty())
-        throw InputError("--samples: which samples a pixel gets is for --target-error to decide");
     if (!options.output.empty()) {
         image_format(options.output);
         check_writable(options.output);
@@ -187,14 +191,16 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
 
     const int signal = checkpoint.stopped_by();
     if (signal != 0 && ranks.is_first())
-        fmt::print(stderr,
-                   "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
-                   options.checkpoint.file, record.samples_done);
-    const int status = signal == 0 ? 0 : 128 + signal;
+        print(stderr,
+              "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
+              options.checkpoint.file, record.samples_done);
+    const bool is_missed = signal == 0 && misses_target(record);
+    if (is_missed && ranks.is_first()) print_miss(record);
+    const int status = signal != 0 ? 128 + signal : is_missed ? 1 : 0;
     if (options.is_quiet) return status;
     print_summary(record);
-    if (!options.output.empty()) fmt::print("{}\n", options.output);
-    if (!options.cost_image.empty()) fmt::print("{}\n", options.cost_image);
+    if (!options.output.empty()) print("{}\n", options.output);
+    if (!options.cost_image.empty()) print("{}\n", options.cost_image);
     if (!options.trace.empty()) print_trace(options.trace, trace);
     return status;
 }

@@ -13,6 +13,7 @@
 #include "bench/studies/runner.h"
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/print.h"
 #include "cli/progress_bar.h"
 #include "core/error.h"
 
@@ -43,8 +44,8 @@ void stop(int signal) {
 }
 
 void list_studies() {
-    for (const auto& study : studies::all_studies()) fmt::print("{:<14} {}\n", study->name(), study->question());
-    fmt::print("{:<14} All of the paper's experiments, and a page that holds its figures against ours.\n", kReproduce);
+    for (const auto& study : studies::all_studies()) print("{:<14} {}\n", study->name(), study->question());
+    print("{:<14} All of the paper's experiments, and a page that holds its figures against ours.\n", kReproduce);
 }
 
 /// One study, in `folder`.
@@ -57,12 +58,12 @@ int run(const studies::Study& study, const fs::path& folder, StudyCommand& comma
         is_complete = studies::run_study(study, command.options, folder, {command.is_fresh, &is_stopped, &progress});
     }
     if (!is_complete) {
-        fmt::print(stderr, "raypool: stopped after {} runs, all of them kept; the same command goes on from there\n",
-                   progress.paths.load());
+        print(stderr, "raypool: stopped after {} runs, all of them kept; the same command goes on from there\n",
+              progress.paths.load());
         return 128 + SIGINT;
     }
     studies::draw_pictures(folder);
-    if (!command.is_quiet) fmt::print("{}\n", (folder / "summary.md").string());
+    if (!command.is_quiet) print("{}\n", (folder / "summary.md").string());
     return 0;
 }
 
@@ -84,7 +85,7 @@ int study(StudyCommand& command) {
         if (status != 0) return status;
     }
     studies::write_reproduction(folder);
-    if (!command.is_quiet) fmt::print("{}\n", (folder / "summary.md").string());
+    if (!command.is_quiet) print("{}\n", (folder / "summary.md").string());
     return 0;
 }
 

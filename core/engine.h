@@ -47,10 +47,10 @@ struct RenderSettings {
     const std::vector<std::uint32_t>* pixels = nullptr;
     std::uint64_t seed = 0;
     Sampler sampler = Sampler::Independent;
-    int split_depth = 0;  ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits
+    int split_depth = 0;    ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits
     bool roulette = false;  ///< end paths that carry little by chance, without bias (core/shade.h)
     int threads = 1;
-    LoopSchedule schedule;
+    LoopSchedule schedule;  ///< of an engine that loops over the image; so is the grain
     Grain grain;
     bool count_work = false;  ///< count box and primitive tests (slower: with code compiled for every feature)
     bool log_rounds = false;  ///< report the rounds of a wavefront engine; two looks at the clock a stage and batch
@@ -131,6 +131,9 @@ class Engine {
     virtual ~Engine() = default;
 
     [[nodiscard]] virtual std::string name() const = 0;
+    /// Whether threads get parts of the image, as RenderSettings::schedule and grain say. Where not, the two do
+    /// nothing.
+    [[nodiscard]] virtual bool loops_over_image() const { return true; }
 
     /// Adds the samples to the framebuffer, which has the scene's size. Throws InputError for settings that this
     /// engine cannot carry out on this machine; the framebuffer is then untouched.

@@ -27,7 +27,8 @@ inline constexpr std::int64_t kMaxSceneTexels = std::int64_t{1} << 28;  ///< of 
 
 enum class ImageFormat { Png, Exr, Pfm };
 
-/// What an image carries besides pixels, such as its settings and its hash. Names are ASCII with 1 to 79 characters.
+/// What an image carries besides pixels, such as its settings and its hash. Names are ASCII with 1 to 79 characters,
+/// texts are written as UTF-8 (core/text.h).
 using ImageAttributes = std::map<std::string, std::string>;
 
 /// By the extension, in either case; an InputError for any other than .png, .exr and .pfm.

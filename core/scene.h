@@ -87,7 +87,7 @@ struct Plane {
 
 /// A primitive's id counts through all shapes in this order: spheres, quads, planes.
 struct Scene {
-    std::string name;          ///< file name without folder and extension
+    std::string name;          ///< file name without folder and extension, as UTF-8
     std::string description;   ///< what the scene is for and where it comes from; not empty
     std::int64_t width = 400;  ///< default image size in pixels, each in [1, 65536]
     std::int64_t height = 225;

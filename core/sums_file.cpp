@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/json_parser.h"
 #include "core/output_file.h"
 #include "core/settings_text.h"
@@ -210,7 +211,7 @@ std::vector<SampleRange> gaps(const std::vector<SampleRange>& ranges, std::int64
 }
 
 void write_sums(const std::filesystem::path& path, const RenderSums& sums) {
-    std::string text = header_of(sums).dump() + "\n";
+    std::string text = json_text(header_of(sums), JsonLayout::OneLine) + "\n";
     append<std::int64_t>(text, sums.framebuffer.sums());
     append<std::int64_t>(text, sums.framebuffer.squares());
     append<std::int32_t>(text, sums.sample_counts);

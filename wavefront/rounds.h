@@ -116,8 +116,10 @@ RenderReport render_shared_pool(const RenderContext<ScalarOf<Real>>& context, Sh
     const RenderSettings& settings = context.settings;
     const CameraPaths image(settings, scene.width, scene.height);
     PathCounter camera(image.left());
+    RenderSettings loop = settings;
+    loop.schedule = context.pool.batch_schedule;
 
-    return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
+    return run_threads(loop, [&](ThreadWork& work, SampleAudit& audit) {
         Stages<needs, Real, Work, splitting> stages(context, pool.batch(), omp_get_thread_num());
         ProgressBatch progress(settings.progress);
 

@@ -66,7 +66,7 @@ std::string image_of(const StudyScene& scene, const RenderSettings& settings) {
 std::vector<Column> render_columns() {
     return {{"engine", ColumnType::Text, "who rendered"},
             {"threads", ColumnType::Count, "OpenMP threads"},
-            {"schedule", ColumnType::Text, "of the loop over the image or the pool"},
+            {"schedule", ColumnType::Text, "of the loop over the image; empty for a shared pool"},
             {"grain", ColumnType::Text, "what one iteration of that loop renders"},
             {"width", ColumnType::Count, "image width, pixels"},
             {"seconds", ColumnType::Real, "wall clock of the parallel region"},
@@ -76,13 +76,14 @@ std::vector<Column> render_columns() {
             {"hash", ColumnType::Text, "of the sums of the image"}};
 }
 
-Row render_row(const std::string& engine, const StudyScene& scene, const RenderSettings& settings,
+Row render_row(const std::string& name, const Engine& engine, const StudyScene& scene, const RenderSettings& settings,
                const Measured& measured) {
     const RenderReport& report = measured.report;
-    return {engine,
+    const auto of_loop = [&](const std::string& text) { return engine.loops_over_image() ? Value(text) : Value(); };
+    return {name,
             settings.threads,
-            to_string(settings.schedule),
-            to_string(settings.grain),
+            of_loop(to_string(settings.schedule)),
+            of_loop(to_string(settings.grain)),
             scene.compiled.width,
             report.seconds,
             static_cast<double>(report.paths()) / report.seconds * 1e-6,
@@ -94,7 +95,7 @@ Row render_row(const std::string& engine, const StudyScene& scene, const RenderS
 Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
                  const RenderSettings& settings, int repeats, const Row& extra) {
     const auto run = [engine, scene, settings, extra]() -> std::vector<Row> {
-        Row row = render_row(engine.name, *scene, settings, measure(*engine.engine, *scene, settings));
+        Row row = render_row(engine.name, *engine.engine, *scene, settings, measure(*engine.engine, *scene, settings));
         row.insert(row.end(), extra.begin(), extra.end());
         return {row};
     };

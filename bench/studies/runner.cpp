@@ -20,7 +20,9 @@
 #include "bench/studies/report.h"
 #include "core/environment.h"
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/output_file.h"
+#include "core/text.h"
 
 namespace raypool::studies {
 
@@ -56,8 +58,9 @@ json identity(const Study& study, const StudyOptions& options, const std::vector
               const std::vector<Column>& columns) {
     json plan = json::array();
     for (const Case& c : cases) plan.push_back({{"case", c.id}, {"image", c.image}, {"repeats", c.repeats}});
-    json asked{{"quick", options.is_quick},  {"scene", options.scene}, {"width", options.width},
-               {"spp", options.spp},         {"depth", options.depth}, {"threads", options.threads},
+    json asked{{"quick", options.is_quick},  {"scene", valid_utf8(options.scene)},
+               {"width", options.width},     {"spp", options.spp},
+               {"depth", options.depth},     {"threads", options.threads},
                {"repeats", options.repeats}, {"seed", options.seed}};
     if (options.is_scene_given) asked["scene_given"] = true;
     json described = json::array();
@@ -197,7 +200,7 @@ bool run_study(const Study& study, const StudyOptions& options, const fs::path& 
     const bool was_complete = data.run_count() == run_count(study, options);
     if (!was_complete) {
         run["started"].push_back(now());
-        write_text(folder / "run.json", run.dump(2) + "\n");
+        write_json(folder / "run.json", run);
     }
     if (control.progress != nullptr) control.progress->paths = data.run_count();
 
@@ -225,7 +228,7 @@ bool run_study(const Study& study, const StudyOptions& options, const fs::path& 
     add_summary(run, summary);
     study.write_images(folder, options);
     write_text(folder / "summary.md", summary_page(run));
-    write_text(folder / "run.json", run.dump(2) + "\n");
+    write_json(folder / "run.json", run);
     return true;
 }
 

@@ -55,7 +55,8 @@ class StudyTest(CommandTest):
         self.assertIn("schedules", names)
         for name in names:
             with self.subTest(name):
-                self.run_well("study", name, *TINY, "--threads", "2", "--quiet", timeout=300)
+                threads = () if name == "ranks" else ("--threads", "2")
+                self.run_well("study", name, *TINY, *threads, "--quiet", timeout=300)
                 if name == "reproduce":
                     page = (self.folder / "out/reproduce/summary.md").read_text()
                     for item in ("Table 1", "Table 2", "Figure 5", "Figure 11", "CPU against GPU"):
@@ -94,6 +95,13 @@ class StudyTest(CommandTest):
     def test_another_run_in_the_folder_is_refused(self):
         self.run_well("study", "schedules", *TINY, "--quiet")
         self.assert_refused("study", "schedules", *TINY, "--seed", "1", named=["out/schedules", "options", "--fresh"])
+
+    def test_scene_with_a_name_that_is_no_utf8_can_be_gone_on_with(self):
+        scene = os.fsdecode(b"bad\xff\x1b.json")
+        (self.folder / scene).write_bytes((self.folder / "scene.json").read_bytes())
+        for _ in range(2):
+            self.run_well("study", "schedules", *TINY, "--threads", 1, "--scene", scene, "--out", scene[:-5], "--quiet")
+            self.check_folder(self.folder / scene[:-5])
 
     def test_bad_input_is_refused(self):
         self.assert_refused("study", "nothing", named=["nothing", "schedules"])
