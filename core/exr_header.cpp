@@ -93,8 +93,8 @@ void take_value(std::string_view type, Walk& value, std::size_t size, std::int64
         value.take(fixed->size);
     } else if (type == "chlist") {
         channel_count += count_channels(value);
-    } else if (type == "string" || (type == "floatvector" && size % sizeof(float) == 0)) {
-        value.take(size);
+    } else if (type == "floatvector") {
+        value.take(size - size % sizeof(float));
     } else if (type == "stringvector") {
         while (!value.is_at_end()) value.take_sized();
     } else if (type == "preview") {
