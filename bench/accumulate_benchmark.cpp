@@ -152,8 +152,25 @@ std::vector<Deposit> pool_order() {
         paper_scene(), settings, kPool, random_seed(settings.seed, settings.sampler), StageRig<float>::roomy(),
         recorder};
     InPlacePool<kPaper, float> pool(PoolSettings::kSharedCapacity, static_cast<std::size_t>(kPool.batch), 0);
-    ThreadRounds rounds(1);
-    render_shared_pool<kPaper, Lanes, NoWorkCount, Splitting::Off>(context, pool, rounds);
+    Stages<kPaper, Lanes, NoWorkCount, Splitting::Off> stages(context, pool.batch(), 0);
+    const CameraPaths image(RenderUnit{0, settings.end_sample, nullptr}, paper_scene().width, paper_scene().height);
+    PathCounter camera(image.left());
+    const FlushDenormals flush;
+    do {  // the rounds of SharedPoolSession, in one thread
+        const bool takes_camera = pool.is_empty();
+        for (std::int64_t b = 0; b < pool.batch_count(); ++b) {
+            const std::size_t survivors = stages.advance(pool.records(), pool.first(b), pool.count(b));
+            std::size_t end = stages.pass_on(pool, b, pool.first(b), survivors);
+            for (std::size_t room = takes_camera ? pool.room(b) : 0; room > 0;) {
+                const PathCounter::Part part = camera.take(std::min(room, kCameraChunk));
+                if (part.count == 0) break;
+                room -= static_cast<std::size_t>(part.count);
+                end = stages.pass_on(pool, b, end,
+                                     stages.generate(pool.records(), end, image.part(part.begin, part.count)));
+            }
+        }
+        pool.end_round([] {});
+    } while (!pool.is_empty() || !camera.is_done());
     return std::move(recorder.all());
 }
 

@@ -3,6 +3,7 @@
 RAYPOOL_KILLS=50 kills a render so many times (a few, where it is not set). The last test prints the table of faults.
 """
 
+import collections
 import contextlib
 import ctypes
 import ctypes.util
@@ -366,8 +367,8 @@ class CheckpointTest(CommandTest):
         for options, passes in (((*RENDER, "--checkpoint", "c.sums"), 3), (render(**{"target-error": 0.02}), 2)):
             self.run_well(*options, "--trace", "t.json")
             events = json.loads((self.folder / "t.json").read_text())["traceEvents"]
-            lines = [event for event in events if event.get("name") == "line" and event["args"]["y"] == 0]
-            self.assertGreaterEqual(len(lines), passes)
+            lines = collections.Counter(event["args"]["y"] for event in events if event.get("name") == "line")
+            self.assertGreaterEqual(max(lines.values()), passes)  # of an adaptive render: a line that got more samples
 
     def test_what_makes_no_sense_is_refused(self):
         self.run_well(*RENDER, "--samples", "0:1", "--checkpoint", "c.sums")

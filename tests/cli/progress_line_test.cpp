@@ -28,5 +28,17 @@ TEST(ProgressLine, StaysWithinItsBarForCountsBeyondTheEnd) {
     EXPECT_EQ(progress_line(12, 0, 10, kPaths, 2, 80).find("[==============================] 100 %"), 0U);
 }
 
+TEST(ProgressLine, OfWhatIsGoneOnWithTakesTheRateOfThisRunOnly) {
+    EXPECT_EQ(progress_line(8'000'000, 6'000'000, 10'000'000, kPaths, 2, 40), " 80 %  1.00 M paths/s  0:02 left");
+    EXPECT_EQ(progress_line(6'000'000, 6'000'000, 10'000'000, kPaths, 2, 40), " 60 %  0.00 M paths/s  -:-- left");
+    EXPECT_EQ(progress_line(10'000'000, 6'000'000, 10'000'000, kPaths, 2, 40), "100 %  2.00 M paths/s  0:00 left");
+}
+
+TEST(ProgressLine, OfWhatHasNoKnownEndShowsWhatIsDone) {
+    EXPECT_EQ(progress_line(5'000'000, 1'000'000, 0, kPaths, 2, 80), "5.00 M paths  2.00 M paths/s");
+    EXPECT_EQ(progress_line(5'000'000, 1'000'000, 0, kPaths, 2, 20), "5.00 M paths");
+    EXPECT_EQ(progress_line(5'000'000, 1'000'000, 0, kPaths, 2, 5), "");
+}
+
 }  // namespace
 }  // namespace raypool::cli
