@@ -4,8 +4,8 @@
 /// are in ranks_mpi.cpp, the only file that knows MPI. It is built where CMake finds MPI, as a module that is loaded
 /// where a launcher has started the command: without one, the command starts as fast as if there were no MPI.
 ///
-/// All ranks must call what is collective, in the same order. What one of them throws does not reach the others: main
-/// ends the job for all of them (fail()).
+/// All ranks must call what is collective, in the same order. The first such call is agree() (agreement.h).
+/// What one of them throws does not reach the others: main ends the job for all of them (fail()).
 #pragma once
 
 #include <cstddef>
@@ -33,6 +33,9 @@ class Ranks {
     [[nodiscard]] bool is_first() const { return rank_ == 0; }
     /// How many of the ranks share this machine's memory.
     [[nodiscard]] int on_this_machine() const { return on_this_machine_; }
+    /// All ranks have said that they are about to do the same (agreement.h).
+    [[nodiscard]] bool has_agreed() const { return has_agreed_; }
+    void set_agreed() { has_agreed_ = true; }
 
     /// Says what went wrong and, where there are other ranks, ends all of them. Returns the status. Not collective.
     virtual int fail(int status, const std::string& text) const {
@@ -65,6 +68,9 @@ class Ranks {
     int rank_ = 0;
     int count_ = 1;
     int on_this_machine_ = 1;
+
+  private:
+    bool has_agreed_ = false;
 };
 
 /// Joins the ranks of a launcher; one rank where none has started this process. Throws InputError where several were
