@@ -31,21 +31,6 @@ std::unique_ptr<Engine> make_engine(const RenderRecord& record, cluster::Ranks& 
     return ranks.count() == 1 ? std::move(own) : std::make_unique<cluster::RankEngine>(std::move(own), ranks);
 }
 
-/// All that fixes the samples. Threads, engine and pool do not, nor does how many there are.
-ImageKey image_key(const Scene& scene, const RenderRecord& record) {
-    const RenderSettings& settings = record.settings;
-    return {{"scene", scene_hash(scene)},
-            {"width", fmt::to_string(scene.width)},
-            {"height", fmt::to_string(scene.height)},
-            {"depth", fmt::to_string(settings.depth)},
-            {"split_depth", fmt::to_string(settings.split_depth)},
-            {"seed", fmt::to_string(settings.seed)},
-            {"sampler", settings.sampler == Sampler::Sobol ? "sobol" : "independent"},
-            {"roulette", settings.roulette ? "on" : "off"},
-            {"precision", record.precision == Precision::Float ? "float" : "double"},
-            {"target_error", fmt::to_string(record.target_error)}};
-}
-
 /// Renders what `sums` lacks, and keeps checkpoints.
 template <class Scalar>
 RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& scene, const RenderRecord& record,
@@ -138,6 +123,21 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
 }
 
 }  // namespace
+
+ImageKey image_key(const Scene& scene, const RenderRecord& record) {
+    const RenderSettings& settings = record.settings;
+    return {{"image_version", fmt::to_string(kImageVersion)},
+            {"width", fmt::to_string(scene.width)},
+            {"height", fmt::to_string(scene.height)},
+            {"scene", scene_hash(scene)},
+            {"depth", fmt::to_string(settings.depth)},
+            {"split_depth", fmt::to_string(settings.split_depth)},
+            {"seed", fmt::to_string(settings.seed)},
+            {"sampler", settings.sampler == Sampler::Sobol ? "sobol" : "independent"},
+            {"roulette", settings.roulette ? "on" : "off"},
+            {"precision", record.precision == Precision::Float ? "float" : "double"},
+            {"target_error", fmt::to_string(record.target_error)}};
+}
 
 Image render_image(const Scene& scene, const CheckpointOptions& options, bool is_quiet, Checkpoint& checkpoint,
                    cluster::Ranks& ranks, RenderRecord& record) {
