@@ -11,6 +11,7 @@
 #include "cli/stopwatch.h"
 #include "cluster/exchange.h"
 #include "cluster/rank_engine.h"
+#include "core/light_range.h"
 #include "core/progressive.h"
 #include "core/scene_hash.h"
 #include "recursive/engine.h"
@@ -117,9 +118,14 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
     checkpoint.finish(sums);
     record.settings.progress = nullptr;
     record.hash = sums.framebuffer.hash();
+    record.sum_step = 1 / sums.framebuffer.fixed_point().scale();
+    record.dimmest_light = dimmest_light(scene);
     record.samples_done = is_adaptive ? std::llround(record.adaptive.mean_samples()) : sums.sample_count();
-    return is_adaptive ? sums.framebuffer.image(record.adaptive.sample_counts)
-                       : sums.framebuffer.image(record.samples_done);
+    Image image = is_adaptive ? sums.framebuffer.image(record.adaptive.sample_counts)
+                              : sums.framebuffer.image(record.samples_done);
+    record.mean_radiance =
+        std::accumulate(image.rgb.begin(), image.rgb.end(), 0.0) / static_cast<double>(image.rgb.size());
+    return image;
 }
 
 }  // namespace
