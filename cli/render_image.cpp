@@ -60,7 +60,7 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
             return checkpoint.keep(sums);
         };
         RenderReport report = render_adaptively(engine, scene, record.settings, plan, sums.framebuffer, keep);
-        adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds(), plan.is_reached()};
+        adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds()};
         return report;
     }
     RenderReport report;

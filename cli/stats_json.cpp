@@ -16,7 +16,7 @@ bool loops_over_image(const RenderRecord& record) {
 }
 
 bool misses_target(const RenderRecord& record) {
-    return record.target_error > 0 && !record.adaptive.is_reached;
+    return record.target_error > 0 && record.adaptive.rmse > record.target_error;
 }
 
 json settings_json(const RenderRecord& record) {

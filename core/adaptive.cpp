@@ -41,8 +41,8 @@ std::vector<double> smoothed(const std::vector<double>& values, std::int64_t wid
     return out;
 }
 
-/// Where a pixel with `count` samples may stop next: a quarter more, so that few samples are taken for nothing. One
-/// that wants more goes on to at most twice what it has before it is looked at again.
+/// Where a pixel with `count` samples may stop next: a quarter more, so that few samples are taken for nothing. One that
+/// wants more goes on to at most twice what it has before it is looked at again.
 std::int64_t next_stop(std::int64_t count) {
     return count == 0 ? AdaptivePlan::kFirstSamples : count + (count + 3) / 4;
 }
@@ -78,7 +78,7 @@ std::vector<SamplePass> AdaptivePlan::next(const Framebuffer& framebuffer) {
     if (rounds_++ == 0) return passes(std::vector<float>(counts_.size(), 1));
 
     const ErrorEstimate estimate = this->estimate(framebuffer);
-    if (is_reached()) return {};
+    if (rmse_ <= target_error_) return {};
 
     // By Neyman's rule a pixel should have samples in proportion to its deviation, as many as reach the error. Where
     // smoothing has taken them to the wrong pixels, all get more.

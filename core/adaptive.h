@@ -60,8 +60,6 @@ class AdaptivePlan {
 
     /// As estimated by the last next() or estimate().
     [[nodiscard]] double rmse() const { return rmse_; }
-    /// Whether that is the target error, or less.
-    [[nodiscard]] bool is_reached() const { return rmse_ <= target_error_; }
     /// How often next() was asked: estimates, and what followed from them.
     [[nodiscard]] int rounds() const { return rounds_; }
 
@@ -81,7 +79,6 @@ struct AdaptiveReport {
     std::vector<std::int32_t> sample_counts;  ///< by pixel
     double rmse = 0;                          ///< estimated, of the image
     int rounds = 0;                           ///< of estimate and render
-    bool is_reached = false;                  ///< the target error; where not, samples ran out, or it was stopped
 
     [[nodiscard]] double mean_samples() const;
 };
@@ -113,7 +110,7 @@ RenderReport render_adaptively(const Engine& engine, const CompiledScene<Scalar>
                                double target_error, Framebuffer& framebuffer, AdaptiveReport& adaptive) {
     AdaptivePlan plan(target_error, settings.end_sample, scene.width, scene.height);
     RenderReport report = render_adaptively(engine, scene, settings, plan, framebuffer, [] { return true; });
-    adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds(), plan.is_reached()};
+    adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds()};
     return report;
 }
 
