@@ -1,5 +1,3 @@
-#include <omp.h>
-
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -148,6 +146,7 @@ void print_table(const std::vector<Contender>& list) {
               100 * studies::waiting(contender.last), contender.last.record_bytes,
               static_cast<double>(contender.last.pool_bytes) / (1024 * 1024), contender.hash);
     }
+    print("not timed, of any engine: the scene's reading and its tables, the framebuffer's making and its hash\n");
 }
 
 nlohmann::json table_json(const std::vector<Contender>& list) {
@@ -163,6 +162,7 @@ nlohmann::json table_json(const std::vector<Contender>& list) {
                         {"segments", contender.last.segments()},
                         {"load_max_over_mean", load_imbalance(contender.last)},
                         {"waiting", studies::waiting(contender.last)},
+                        {"setup_s", contender.last.setup_s},
                         {"record_bytes", contender.last.record_bytes},
                         {"pool_bytes", contender.last.pool_bytes},
                         {"pool", contender.pool}});
@@ -173,6 +173,7 @@ nlohmann::json table_json(const std::vector<Contender>& list) {
 int compare(const CompareOptions& options) {
     if (kIsDebugBuild && !options.only_check)
         throw InputError("compare: a debug build does not time; build in Release, or add --check");
+    check_distinct({{"--json", options.json}}, {{"the scene", options.scene}});
     if (!options.json.empty()) check_writable(options.json);
     Scene scene = load_scene(options.scene);
     if (options.width != 0) set_width(scene, options.width);
@@ -185,7 +186,7 @@ int compare(const CompareOptions& options) {
     settings.seed = parse_seed(options.seed);
     settings.sampler = parse_sampler(options.sampler);
     settings.roulette = options.roulette;
-    settings.threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
+    settings.threads = thread_count(options.threads);
     settings.schedule = options.schedule ? parse_schedule(*options.schedule) : default_schedule();
     settings.grain = parse_grain(options.grain);
 

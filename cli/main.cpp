@@ -15,6 +15,7 @@
 #include "cli/print.h"
 #include "cluster/ranks.h"
 #include "core/error.h"
+#include "core/memory.h"
 #include "core/text.h"
 
 namespace {
@@ -50,7 +51,8 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
     } catch (const raypool::InputError& error) {
         return fail(2, error.what());
     } catch (const std::bad_alloc&) {
-        return fail(1, "out of memory");
+        return fail(2,
+                    fmt::format("out of memory: {} are available", raypool::bytes_text(raypool::available_memory())));
     } catch (const std::exception& error) {
         return fail(1, error.what());
     }

@@ -46,7 +46,8 @@ void show(const std::stop_token& stop, const Progress& progress, std::int64_t to
     while (!wake.wait_for(lock, stop, std::chrono::milliseconds(100), [&] { return stop.stop_requested(); })) {
         const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
         const std::int64_t done = progress.paths.load(std::memory_order_relaxed);
-        fmt::print(stderr, "\r{}\x1b[K", progress_line(done, total, unit, seconds, terminal_columns()));
+        fmt::print(stderr, "\r{}\x1b[K",
+                   progress_line(done, progress.before, total, unit, seconds, terminal_columns()));
         std::fflush(stderr);
     }
     fmt::print(stderr, "\r\x1b[K");
@@ -60,14 +61,21 @@ ProgressBar::ProgressBar(const Progress& progress, std::int64_t total, const Uni
         std::jthread([&progress, total, unit](const std::stop_token& stop) { show(stop, progress, total, unit); });
 }
 
-std::string progress_line(std::int64_t done, std::int64_t total, const ProgressBar::Unit& unit, double seconds,
-                          std::size_t columns) {
+std::string progress_line(std::int64_t done, std::int64_t before, std::int64_t total, const ProgressBar::Unit& unit,
+                          double seconds, std::size_t columns) {
+    const double rate = static_cast<double>(done - before) / seconds;
+    if (total == 0) {  // what is counted, without the "/s" of its rate
+        const std::string_view what(unit.name, std::string_view(unit.name).rfind('/'));
+        const std::string count = fmt::format("{:.2f} {}", static_cast<double>(done) * unit.scale, what);
+        for (std::string line : {fmt::format("{}  {:.2f} {}", count, rate * unit.scale, unit.name), count})
+            if (line.size() < columns) return line;
+        return "";
+    }
     const double part = std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0);
-    const double rate = static_cast<double>(done) / seconds;
     const auto to_do = static_cast<double>(std::max<std::int64_t>(total - done, 0));
     const std::string percent = fmt::format("{:3.0f} %", 100 * part);
     const std::string speed = fmt::format("  {:.2f} {}", rate * unit.scale, unit.name);
-    const std::string left = fmt::format("  {} left", done == 0 ? "-:--" : duration(to_do / rate));
+    const std::string left = fmt::format("  {} left", done <= before ? "-:--" : duration(to_do / rate));
 
     // The last column stays free: a terminal may wrap when it is written to.
     const std::size_t room = std::max<std::size_t>(columns, 1) - 1;

@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -22,6 +23,7 @@
 #include "core/heat_map.h"
 #include "core/image_file.h"
 #include "core/json_file.h"
+#include "core/memory.h"
 #include "core/output_file.h"
 #include "core/scene_reader.h"
 #include "core/trace.h"
@@ -85,18 +87,17 @@ RenderSettings render_settings(const RenderOptions& options) {
     return settings;
 }
 
-/// Sums, the image made of them and, where asked for, second moments with their estimates and the checkpoint's bytes
-/// must fit into the machine, before anything is touched. Each rank on it has its own.
+/// Sums, the image made of them and, where asked for, costs with their image, second moments with their estimates and
+/// the checkpoint's bytes must fit into the memory that is available, before anything is touched. Each rank on this
+/// machine has its own.
 void check_memory(const Scene& scene, const RenderOptions& options, const cluster::Ranks& ranks) {
-    double pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
+    std::size_t pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
+    if (!options.cost_image.empty()) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(float);
     if (options.target_error > 0) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
     if (!options.checkpoint.file.empty()) pixel_bytes += 4 * sizeof(std::int64_t) + sizeof(std::int32_t);
-    const double bytes = static_cast<double>(scene.width * scene.height) * pixel_bytes * ranks.on_this_machine();
-    const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-    if (bytes > machine)
-        throw InputError(
-            fmt::format("--width: an image of {} x {} pixels needs {:.1f} GB of memory, this machine has {:.1f}",
-                        scene.width, scene.height, bytes * 1e-9, machine * 1e-9));
+    check_available(static_cast<std::size_t>(scene.width * scene.height) * pixel_bytes *
+                        static_cast<std::size_t>(ranks.on_this_machine()),
+                    fmt::format("--width: the sums and images of {} x {} pixels", scene.width, scene.height));
 }
 
 /// Of the code that a scene runs on, which may be compiled for more than it needs.
@@ -123,15 +124,22 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
     write_image(options.cost_image, is_picture ? heat_map(cost) : cost.image(), attributes);
 }
 
-/// What only one rank can do is for rank 0; what is not gathered from ranks is refused.
-void make_ready(RenderOptions& options, const cluster::Ranks& ranks) {
+/// What only one rank can do is for rank 0; what is not gathered from ranks is refused. Returns the checkpoint's lock.
+[[nodiscard]] std::unique_ptr<FileLock> make_ready(RenderOptions& options, const cluster::Ranks& ranks) {
+    if (ranks.separate_count() > 1 && options.samples.empty())
+        throw InputError(fmt::format(
+            "{} tasks were started that know nothing of each other, and each would render the whole image: use mpirun "
+            "or "
+            "srun --mpi=pmix, or give each its --samples, or unset SLURM_STEP_NUM_TASKS where each renders its own",
+            ranks.separate_count()));
     if (ranks.count() > 1)
         for (const auto& [flag, file] : {std::pair{"--trace", options.trace}, {"--cost-image", options.cost_image}})
             if (!file.empty()) throw InputError(fmt::format("{}: is not made by several ranks", flag));
-    if (ranks.is_first()) return check(options.checkpoint);
+    if (ranks.is_first()) return claim(options.checkpoint);
     options.output.clear();
     options.stats.clear();
     options.is_quiet = true;
+    return nullptr;
 }
 
 int render(RenderOptions& options, cluster::Ranks& ranks) {
@@ -140,8 +148,9 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
                     {"--checkpoint", options.checkpoint.file},
                     {"--stats", options.stats},
                     {"--trace", options.trace},
-                    {"--cost-image", options.cost_image}});
-    make_ready(options, ranks);
+                    {"--cost-image", options.cost_image}},
+                   {{"the scene", options.scene}});
+    const std::unique_ptr<FileLock> lock = make_ready(options, ranks);
     RenderRecord record;
     record.settings = render_settings(options);
     record.spp = options.spp;
@@ -182,15 +191,24 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     Checkpoint checkpoint(options.checkpoint, ranks);
     const Image image = render_image(scene, options.checkpoint, options.is_quiet, checkpoint, ranks, record);
     watch.lap();
-    if (!options.output.empty()) write_image(options.output, image, image_attributes(record));
+    std::exception_ptr failure = checkpoint.failure();  // what cannot be written costs nothing else
+    const auto attempt = [&failure](const std::string& file, const auto& write) {
+        try {
+            if (!file.empty()) write(file);
+        } catch (...) {
+            if (!failure) failure = std::current_exception();
+        }
+    };
+    attempt(options.output, [&](const auto& file) { write_image(file, image, image_attributes(record)); });
     record.write_s = watch.seconds();
     record.total_s = total.seconds();
-    if (!options.stats.empty()) write_json(options.stats, stats_json(record));
-    if (!options.cost_image.empty()) write_cost_image(options, cost, record);
-    if (!options.trace.empty()) write_trace(options.trace, trace, image_attributes(record));
+    attempt(options.stats, [&](const auto& file) { write_json(file, stats_json(record)); });
+    attempt(options.cost_image, [&](const auto&) { write_cost_image(options, cost, record); });
+    attempt(options.trace, [&](const auto& file) { write_trace(file, trace, image_attributes(record)); });
+    if (failure) std::rethrow_exception(failure);
 
     const int signal = checkpoint.stopped_by();
-    if (signal != 0 && ranks.is_first())
+    if (signal != 0 && ranks.is_first() && !Checkpoint::has_said_so())
         print(stderr,
               "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
               options.checkpoint.file, record.samples_done);

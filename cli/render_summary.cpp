@@ -28,6 +28,18 @@ void print_work(const RenderSettings& settings, const RenderReport& report) {
               static_cast<double>(report.total(&ThreadWork::primitive_tests)) / segments);
 }
 
+/// What is known of the error of an adaptive render. An estimate is not printed where there is none.
+void print_error(const RenderRecord& record) {
+    const AdaptiveReport& adaptive = record.adaptive;
+    const auto [least, most] = std::minmax_element(adaptive.sample_counts.begin(), adaptive.sample_counts.end());
+    const bool has_estimate = adaptive.rmse > 0;
+    print("RMSE {}at most {:.4g} (asked for {:.4g}: {}) after {} rounds; {} to {} samples a pixel, {:.1f} on average\n",
+          has_estimate ? fmt::format("estimated {:.4g}, ", adaptive.rmse) : "", adaptive.most_rmse, record.target_error,
+          to_string(adaptive.status), adaptive.rounds, *least, *most, adaptive.mean_samples());
+    print("{} pixels without variance; light that no sample has found adds at most {:.3g}\n", adaptive.flat_pixels,
+          adaptive.unseen_rmse);
+}
+
 }  // namespace
 
 void print_summary(const RenderRecord& record) {
@@ -43,13 +55,7 @@ void print_summary(const RenderRecord& record) {
               ? fmt::format("grain {}, schedule {}", to_string(settings.grain), to_string(settings.schedule))
               : "one pool for all");
     print_work(settings, report);
-    if (record.target_error > 0) {
-        const auto [least, most] =
-            std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
-        print("estimated RMSE {:.4g} (asked for {:.4g}) after {} rounds; {} to {} samples a pixel, {:.1f} on average\n",
-              record.adaptive.rmse, record.target_error, record.adaptive.rounds, *least, *most,
-              record.adaptive.mean_samples());
-    }
+    if (record.target_error > 0) print_error(record);
     if (report.pool_bytes > 0)
         print("ray record of {} bytes; pools at most {:.2f} MB\n", report.record_bytes,
               static_cast<double>(report.pool_bytes) / (1024 * 1024));
@@ -62,11 +68,19 @@ void print_summary(const RenderRecord& record) {
 }
 
 void print_miss(const RenderRecord& record) {
+    const AdaptiveReport& adaptive = record.adaptive;
+    if (adaptive.status == TargetStatus::Unknown) {
+        print(
+            stderr,
+            "raypool: --target-error {:g} is not known to be reached: light that no sample has found may add {:.3g}\n",
+            record.target_error, adaptive.unseen_rmse);
+        return;
+    }
     print(
         stderr,
         "raypool: --target-error {:g} is not reached: the estimated RMSE is {:.4g} with the most samples that --spp {} "
         "allows\n",
-        record.target_error, record.adaptive.rmse, record.spp);
+        record.target_error, adaptive.rmse, record.spp);
 }
 
 void print_trace(const std::string& file, const Trace& trace) {

@@ -16,7 +16,7 @@ bool loops_over_image(const RenderRecord& record) {
 }
 
 bool misses_target(const RenderRecord& record) {
-    return record.target_error > 0 && record.adaptive.rmse > record.target_error;
+    return record.target_error > 0 && record.adaptive.status != TargetStatus::Reached;
 }
 
 json settings_json(const RenderRecord& record) {
@@ -76,6 +76,7 @@ json stats_json(const RenderRecord& record) {
                 {{"read", record.read_s},
                  {"compile", record.compile_s},
                  {"render", report.seconds},
+                 {"setup", report.setup_s},  // of render
                  {"write", record.write_s},
                  {"total", record.total_s}}},
                {"paths", report.paths()},
@@ -96,8 +97,12 @@ json stats_json(const RenderRecord& record) {
         const auto [least, most] =
             std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
         stats["adaptive"] = {
+            {"target", to_string(record.adaptive.status)},
             {"rmse_estimate", record.adaptive.rmse},
             {"reached", !misses_target(record)},
+            {"rmse_most", record.adaptive.most_rmse},
+            {"rmse_of_unseen_light", record.adaptive.unseen_rmse},
+            {"pixels_without_variance", record.adaptive.flat_pixels},
             {"rounds", record.adaptive.rounds},
             {"samples_per_pixel", {{"least", *least}, {"mean", record.adaptive.mean_samples()}, {"most", *most}}}};
     }

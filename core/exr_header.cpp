@@ -85,7 +85,7 @@ void take_preview(Walk& value) {
     value.take(texels > SIZE_MAX / kTexelBytes ? SIZE_MAX : texels * kTexelBytes);
 }
 
-/// Takes what OpenEXR would take for a value of the type. Types that it may read in another way are refused.
+/// Takes what OpenEXR would take for a value of the type.
 void take_value(std::string_view type, Walk& value, std::size_t size, std::int64_t& channel_count) {
     const auto* const fixed = std::find_if(kFixedTypes.begin(), kFixedTypes.end(),
                                            [&](const FixedType& candidate) { return candidate.name == type; });
@@ -93,34 +93,47 @@ void take_value(std::string_view type, Walk& value, std::size_t size, std::int64
         value.take(fixed->size);
     } else if (type == "chlist") {
         channel_count += count_channels(value);
-    } else if (type == "string" || (type == "floatvector" && size % sizeof(float) == 0)) {
-        value.take(size);
+    } else if (type == "floatvector") {
+        value.take(size - size % sizeof(float));
     } else if (type == "stringvector") {
         while (!value.is_at_end()) value.take_sized();
     } else if (type == "preview") {
         take_preview(value);
     } else {
-        throw std::runtime_error("an attribute is of a type that is not read");
+        value.take(size);
     }
+}
+
+/// The attributes of a part, up to the empty name behind them. Returns the number of channels.
+std::int64_t take_part(Walk& walk, std::string_view first_name) {
+    std::int64_t channel_count = 0;
+    for (std::string_view name = first_name; !name.empty(); name = walk.take_name()) {
+        const std::string_view type = walk.take_name();
+        const std::string_view content = walk.take_sized();
+        Walk value(content);
+        take_value(type, value, content.size(), channel_count);
+        if (!value.is_at_end()) throw std::runtime_error("an attribute is longer than its type");
+    }
+    return channel_count;
 }
 
 }  // namespace
 
 ExrHeader check_exr_header(BytesView bytes) {
-    constexpr std::int32_t kLongNames = 0x400;  // the only flag of a plain file of scan lines
+    constexpr std::int32_t kNumber = 0xff;
+    constexpr std::int32_t kManyParts = 0x1000;
+    constexpr std::int32_t kKnownFlags = 0x200 | 0x400 | 0x800 | kManyParts;  // tiles, long names, deep data
     Walk walk({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     if (walk.take_int() != kExrMagic) throw std::runtime_error("not an EXR file");
-    ExrHeader header{walk.take_int(), 0};
-    if ((header.version & ~kLongNames) != 2) {
-        throw std::runtime_error("must be version 2 and one part of scan lines: no tiles, deep data or parts");
+    ExrHeader header{walk.take_int(), {}};
+    if ((header.version & kNumber) != 2 || (header.version & ~(kNumber | kKnownFlags)) != 0)
+        throw std::runtime_error("of a version of EXR that is not read");
+    if ((header.version & kManyParts) == 0) {
+        header.channel_counts.push_back(take_part(walk, walk.take_name()));
+        return header;
     }
-    while (!walk.take_name().empty()) {
-        const std::string_view type = walk.take_name();
-        const std::string_view content = walk.take_sized();
-        Walk value(content);
-        take_value(type, value, content.size(), header.channel_count);
-        if (!value.is_at_end()) throw std::runtime_error("an attribute is longer than its type");
-    }
+    for (std::string_view name = walk.take_name(); !name.empty(); name = walk.take_name())
+        header.channel_counts.push_back(take_part(walk, name));
     return header;
 }
 

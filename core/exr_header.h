@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "core/image_codecs.h"
 
@@ -16,11 +17,12 @@ namespace raypool {
 inline constexpr std::int32_t kExrMagic = 20000630;
 
 struct ExrHeader {
-    std::int32_t version;  ///< with its flags
-    std::int64_t channel_count;
+    std::int32_t version;                      ///< with its flags
+    std::vector<std::int64_t> channel_counts;  ///< of each part
 };
 
-/// Throws std::runtime_error for what is not a file of one part of scan lines with sound attributes.
+/// Throws std::runtime_error for what is not an EXR file with sound attributes. An attribute of a type that this reader
+/// does not know takes what it says, as OpenEXR has it.
 ExrHeader check_exr_header(BytesView bytes);
 
 }  // namespace raypool

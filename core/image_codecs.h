@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,14 +24,21 @@ using Bytes = std::vector<std::byte>;
 using BytesView = std::span<const std::byte>;
 
 Bytes encode_png(const Image& image, const ImageAttributes& attributes);
-Image decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels);
+ImageContents decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels);
 
 Bytes encode_exr(const Image& image, const ImageAttributes& attributes);
-Image decode_exr(BytesView bytes);
-ImageAttributes decode_exr_attributes(BytesView bytes);
+ImageContents decode_exr(BytesView bytes);
 
 Bytes encode_pfm(const Image& image);
-Image decode_pfm(BytesView bytes);
+ImageContents decode_pfm(BytesView bytes);
+
+/// An image that is shown whole.
+inline ImageContents whole(Image image) {
+    ImageContents contents;
+    contents.data_window = contents.display_window = {0, image.width, 0, image.height};
+    contents.image = std::move(image);
+    return contents;
+}
 
 inline void check_image_size(std::int64_t width, std::int64_t height, std::int64_t max_side,
                              std::int64_t max_pixels = kMaxImagePixels) {

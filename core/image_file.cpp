@@ -85,7 +85,7 @@ void write_image(const fs::path& path, const Image& image, const ImageAttributes
     write_whole(path, bytes);
 }
 
-Image read_image(const fs::path& path) {
+ImageContents read_image_contents(const fs::path& path) {
     const ImageFormat format = image_format(path);
     return naming(path, "read", [&] {
         const Bytes bytes = read_bytes(path, kMaxImageBytes);
@@ -101,14 +101,14 @@ Image read_image(const fs::path& path) {
     });
 }
 
-ImageAttributes read_exr_attributes(const fs::path& path) {
-    return naming(path, "read", [&] { return decode_exr_attributes(read_bytes(path, kMaxImageBytes)); });
+Image read_image(const fs::path& path) {
+    return read_image_contents(path).image;
 }
 
 std::shared_ptr<const ImageTexels> read_texture(const fs::path& path, std::int64_t max_texels) {
     return naming(path, "read", [&] {
         const auto max_size = 9 * static_cast<std::uintmax_t>(max_texels) + (1U << 20U);  // 8 bytes a texel, and some
-        Image image = decode_png(read_bytes(path, max_size), kMaxTextureSide, max_texels);
+        Image image = decode_png(read_bytes(path, max_size), kMaxTextureSide, max_texels).image;
         return std::make_shared<const ImageTexels>(
             ImageTexels{static_cast<int>(image.width), static_cast<int>(image.height), std::move(image.rgb)});
     });

@@ -1,5 +1,5 @@
-/// Portable Float Map: "PF", width, height and a scale whose sign tells the byte order, then rows from the bottom up.
-/// Format: Paul Debevec, http://www.pauldebevec.com/Research/HDR/PFM/
+/// Portable Float Map: "PF" (or "Pf" for grey), width, height and a scale whose sign tells the byte order, then rows
+/// from the bottom up. Format: Paul Debevec, http://www.pauldebevec.com/Research/HDR/PFM/
 
 #include <bit>
 #include <charconv>
@@ -15,13 +15,13 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "PFM files are written as they lie in memory");
 
-/// Takes one word and the single white space after it off the front of `text`.
+/// Takes one word and the single white space, or end of a line, after it off the front of `text`.
 std::string_view take_word(std::string_view& text) {
     constexpr std::size_t kLongestWord = 32;
     const std::size_t end = text.substr(0, kLongestWord).find_first_of(" \t\r\n");
     if (end == 0 || end == std::string_view::npos) throw std::runtime_error("not a PFM file: broken header");
     const std::string_view word = text.substr(0, end);
-    text.remove_prefix(end + 1);
+    text.remove_prefix(end + (text.substr(end, 2) == "\r\n" ? 2 : 1));
     return word;
 }
 
@@ -54,16 +54,18 @@ Bytes encode_pfm(const Image& image) {
     return bytes;
 }
 
-Image decode_pfm(BytesView bytes) {
+ImageContents decode_pfm(BytesView bytes) {
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (take_word(text) != "PF") throw std::runtime_error("not a PFM file in colour: must begin with PF");
+    const std::string_view kind = take_word(text);
+    if (kind != "PF" && kind != "Pf") throw std::runtime_error("not a PFM file: must begin with PF or Pf");
+    const std::size_t channels = kind == "PF" ? 3 : 1;
     const auto width = take_number<std::int64_t>(text);
     const auto height = take_number<std::int64_t>(text);
     const auto scale = take_number<double>(text);
     check_image_size(width, height, kMaxImageSide);
     if (!std::isfinite(scale) || scale == 0) throw std::runtime_error("the scale must be finite and not 0");
 
-    const std::size_t row_bytes = static_cast<std::size_t>(width) * 3 * sizeof(float);
+    const std::size_t row_bytes = static_cast<std::size_t>(width) * channels * sizeof(float);
     const std::size_t pixel_bytes = row_bytes * static_cast<std::size_t>(height);
     if (text.size() != pixel_bytes) {
         throw std::runtime_error(fmt::format("{} x {} pixels must take {} bytes after the header, got {}", width,
@@ -72,11 +74,14 @@ Image decode_pfm(BytesView bytes) {
     Image image(width, height);
     for (std::int64_t y = height - 1; y >= 0; --y, text.remove_prefix(row_bytes)) {
         std::memcpy(image.pixel(0, y), text.data(), row_bytes);
+        if (channels == 3) continue;
+        float* const row = image.pixel(0, y);
+        for (std::int64_t x = width - 1; x >= 0; --x) row[3 * x] = row[3 * x + 1] = row[3 * x + 2] = row[x];
     }
     if (scale > 0) {
         for (float& value : image.rgb) value = byte_swapped(value);
     }
-    return image;
+    return whole(std::move(image));
 }
 
 }  // namespace raypool

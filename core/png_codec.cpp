@@ -177,7 +177,7 @@ png_text text_chunk(const std::string& name, const std::string& value) {
 
 }  // namespace
 
-Image decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels) {
+ImageContents decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels) {
     check_chunks(bytes);
     PngReader reader(bytes);
     const auto check = [&](bool is_ok) {
@@ -193,6 +193,12 @@ Image decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels
     const std::int64_t row_bits =
         width * png_get_channels(reader.png, reader.info) * png_get_bit_depth(reader.png, reader.info);
     if (row_bits / 8 * height / 1032 > std::ssize(bytes)) throw std::runtime_error("the file ends too early");
+
+    std::vector<std::string> left_out;
+    if ((png_get_color_type(reader.png, reader.info) & PNG_COLOR_MASK_ALPHA) != 0 ||
+        png_get_valid(reader.png, reader.info, PNG_INFO_tRNS) != 0)
+        left_out.emplace_back("alpha");
+    if (png_get_valid(reader.png, reader.info, PNG_INFO_iCCP) != 0) left_out.emplace_back("a colour profile");
 
     check(convert_to_rgb(reader));
     const int bit_depth = png_get_bit_depth(reader.png, reader.info);
@@ -210,7 +216,9 @@ Image decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels
         const int code = bit_depth == 8 ? codes[i] : codes[2 * i] << 8 | codes[2 * i + 1];
         image.rgb[i] = linear[static_cast<std::size_t>(code)];
     }
-    return image;
+    ImageContents contents = whole(std::move(image));
+    contents.left_out = std::move(left_out);
+    return contents;
 }
 
 Bytes encode_png(const Image& image, const ImageAttributes& attributes) {

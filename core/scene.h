@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -74,7 +75,7 @@ struct Sphere {
 struct Quad {
     Vector3d corner{0, 0, 0};
     Vector3d edge_u{1, 0, 0};
-    Vector3d edge_v{0, 1, 0};  ///< not parallel to edge_u
+    Vector3d edge_v{0, 1, 0};  ///< not parallel to edge_u; the outward side is that of edge_u x edge_v
     std::int32_t material_id = 0;
 };
 
@@ -83,6 +84,8 @@ struct Plane {
     Vector3d point{0, 0, 0};
     Vector3d normal{0, 1, 0};  ///< any length > 0
     std::int32_t material_id = 0;
+    /// How many of the scene's quads are listed before it, by default all: of shapes that coincide the first counts.
+    std::int64_t quads_before = std::numeric_limits<std::int64_t>::max();
 };
 
 /// A primitive's id counts through all shapes in this order: spheres, quads, planes.

@@ -258,6 +258,7 @@ class SceneReader {
             plane.point = position(object.required("point"));
             plane.normal = direction(object.required("normal"));
             plane.material_id = material_id(object.required("material"));
+            plane.quads_before = std::ssize(scene_.quads);
             scene_.planes.push_back(plane);
         }
         object.refuse_unknown_keys();

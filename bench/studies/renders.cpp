@@ -48,11 +48,20 @@ std::vector<NamedEngine> ladder_engines(int threads) {
     return engines;
 }
 
+void check_threads(int given, int asked) {
+    if (given != asked)
+        throw InputError(
+            fmt::format("--threads: OpenMP gave {} of {} threads (OMP_THREAD_LIMIT, or a parallel region "
+                        "around this one)",
+                        given, asked));
+}
+
 Measured measure(const Engine& engine, const StudyScene& scene, const RenderSettings& settings) {
     const CompiledScene<float>& compiled = scene.compiled;
     Framebuffer framebuffer(compiled.width, compiled.height,
                             FixedPoint::make(settings.end_sample, compiled.max_radiance));
     RenderReport report = engine.render(compiled, settings, framebuffer);
+    check_threads(static_cast<int>(report.threads.size()), settings.threads);
     return {std::move(report), framebuffer.hash()};
 }
 
@@ -69,7 +78,7 @@ std::vector<Column> render_columns() {
             {"schedule", ColumnType::Text, "of the loop over the image; empty for a shared pool"},
             {"grain", ColumnType::Text, "what one iteration of that loop renders"},
             {"width", ColumnType::Count, "image width, pixels"},
-            {"seconds", ColumnType::Real, "wall clock of the parallel region"},
+            {"seconds", ColumnType::Real, "wall clock of the render: setup, loops, last pass"},
             {"mpaths_per_s", ColumnType::Real, "million paths a second"},
             {"load_max_over_mean", ColumnType::Real, "segments of the busiest thread over the mean"},
             {"waiting", ColumnType::Real, "part of the threads' time spent waiting for others"},
@@ -118,7 +127,7 @@ std::string threads_text(int threads) {
 }
 
 int core_count() {
-    return omp_get_num_procs();
+    return std::min(omp_get_num_procs(), omp_get_thread_limit());
 }
 
 }  // namespace raypool::studies

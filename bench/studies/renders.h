@@ -40,6 +40,10 @@ struct Measured {
     RenderReport report;
     std::string hash;
 };
+/// Throws InputError unless OpenMP gave as many threads as were asked for: a row of fewer would be of another
+/// experiment.
+void check_threads(int given, int asked);
+/// One render. What fixes its threads is checked.
 Measured measure(const Engine& engine, const StudyScene& scene, const RenderSettings& settings);
 
 /// What fixes the image: cases with the same text must have the same hash.

@@ -131,7 +131,7 @@ TEST(ImageFile, ExrAttributesComeBackAsTheyWere) {
     attributes["raypool.text"] = "two\nlines, \xc3\xa9 and \"quotes\"";
     attributes["raypool.a_name_longer_than_31_characters"] = std::string(100'000, 'x');
     write_image(folder / "a.exr", wild_image(3, 3), attributes);
-    EXPECT_EQ(read_exr_attributes(folder / "a.exr"), attributes);
+    EXPECT_EQ(read_image_contents(folder / "a.exr").attributes, attributes);
 }
 
 TEST(ImageFile, PngCarriesTheSrgbChunkAndAttributesAsText) {

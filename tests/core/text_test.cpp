@@ -93,7 +93,7 @@ TEST(ImageAttributes, AreWrittenAsUtf8) {
     image.width = image.height = 1;
     image.rgb = {0, 0, 0};
     for (const char* name : {"a.exr", "a.png"}) write_image(folder.path() / name, image, {{"scene", "bad\xff"}});
-    EXPECT_EQ(read_exr_attributes(folder.path() / "a.exr").at("scene"), std::string("bad") + kReplaced);
+    EXPECT_EQ(read_image_contents(folder.path() / "a.exr").attributes.at("scene"), std::string("bad") + kReplaced);
 }
 
 }  // namespace
