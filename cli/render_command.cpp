@@ -126,7 +126,7 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
 
 /// What only one rank can do is for rank 0; what is not gathered from ranks is refused. Returns the checkpoint's lock.
 [[nodiscard]] std::unique_ptr<FileLock> make_ready(RenderOptions& options, const cluster::Ranks& ranks) {
-    if (ranks.separate_count() > 1 && options.samples.empty())
+    if (ranks.separate_count() > 1 && !options.samples)
         throw InputError(fmt::format(
             "{} tasks were started that know nothing of each other, and each would render the whole image: use mpirun "
             "or "
