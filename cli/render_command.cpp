@@ -242,8 +242,8 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
         print(stderr,
               "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
               options.checkpoint.file, record.samples_done);
-    const bool is_missed = signal == 0 && misses_target(record);
-    if (is_missed && ranks.is_first()) print_miss(record);
+    const bool is_missed = ranks.is_first() && signal == 0 && misses_target(record);
+    if (is_missed) print_miss(record);
     const int status = signal != 0 ? 128 + signal : is_missed ? 1 : 0;
     if (options.is_quiet) return status;
     print_summary(record);

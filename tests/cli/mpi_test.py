@@ -66,6 +66,12 @@ class MpiTest(CommandTest):
         result = self.ranks(3, *adaptive, "--checkpoint", "c.sums", "--resume")
         self.assertEqual(self.hash_of(result), expected)
 
+    def test_target_error_that_is_missed_is_said_once_after_all_is_written(self):
+        result = self.ranks(2, "render", "scene.json", "--target-error", 1e-6, "--spp", 20, "--threads", 1, "-o", "a.pfm")
+        self.assertEqual((result.returncode, result.stderr.count("raypool: ")), (1, 1), result.stderr)
+        self.assertIn("raypool: --target-error 1e-06 is not reached", result.stderr)
+        self.assertTrue(result.stdout.endswith("\na.pfm\n"))
+
     def test_parts_of_different_ranks_add_up(self):
         expected = self.alone(*PAPER)
         parts = {"0:25": 3, "25:26": 2, "26:60": 1}
