@@ -8,11 +8,13 @@
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "core/exr_header.h"
@@ -89,6 +91,29 @@ Imf::FrameBuffer frame_buffer(const float* first, const Window& window) {
     return buffer;
 }
 
+template <class Window>
+ImageWindow window_of(const Window& window) {
+    return {window.min.x, window.min.y, std::int64_t{window.max.x} - window.min.x + 1,
+            std::int64_t{window.max.y} - window.min.y + 1};
+}
+
+std::optional<Chromaticities> chromaticities_of(const Imf::Header& header) {
+    if (!Imf::hasChromaticities(header)) return {};
+    const Imf::Chromaticities& c = Imf::chromaticities(header);
+    const Chromaticities xy{c.red.x, c.red.y, c.green.x, c.green.y, c.blue.x, c.blue.y, c.white.x, c.white.y};
+    if (are_srgb(xy)) return {};
+    return xy;
+}
+
+ImageAttributes text_attributes(const Imf::Header& header) {
+    ImageAttributes attributes;
+    for (auto entry = header.begin(); entry != header.end(); ++entry) {
+        const auto* text = dynamic_cast<const Imf::StringAttribute*>(&entry.attribute());
+        if (text != nullptr) attributes.emplace(entry.name(), text->value());
+    }
+    return attributes;
+}
+
 }  // namespace
 
 Bytes encode_exr(const Image& image, const ImageAttributes& attributes) {
@@ -106,7 +131,7 @@ Bytes encode_exr(const Image& image, const ImageAttributes& attributes) {
     return std::move(stream.bytes);
 }
 
-Image decode_exr(BytesView bytes) {
+ImageContents decode_exr(BytesView bytes) {
     check_header(bytes);
     MemoryInput stream(bytes);
     Imf::InputFile file(stream);
@@ -132,19 +157,25 @@ Image decode_exr(BytesView bytes) {
         file.setFrameBuffer(frame_buffer(image.pixel(0, row), rows));
         file.readPixels(rows.min.y, rows.max.y);
     }
-    return image;
+    ImageContents contents;
+    contents.image = std::move(image);
+    contents.data_window = window_of(window);
+    contents.display_window = window_of(file.header().displayWindow());
+    for (auto channel = file.header().channels().begin(); channel != file.header().channels().end(); ++channel) {
+        if (std::find_if(kChannels.begin(), kChannels.end(),
+                         [&](const char* name) { return std::strcmp(name, channel.name()) == 0; }) == kChannels.end())
+            contents.unread_channels.emplace_back(channel.name());
+    }
+    contents.chromaticities = chromaticities_of(file.header());
+    contents.attributes = text_attributes(file.header());
+    return contents;
 }
 
 ImageAttributes decode_exr_attributes(BytesView bytes) {
     check_header(bytes);
     MemoryInput stream(bytes);
     const Imf::InputFile file(stream);
-    ImageAttributes attributes;
-    for (auto entry = file.header().begin(); entry != file.header().end(); ++entry) {
-        const auto* text = dynamic_cast<const Imf::StringAttribute*>(&entry.attribute());
-        if (text != nullptr) attributes.emplace(entry.name(), text->value());
-    }
-    return attributes;
+    return text_attributes(file.header());
 }
 
 }  // namespace raypool

@@ -83,6 +83,10 @@ void write_image(const fs::path& path, const Image& image, const ImageAttributes
 }
 
 Image read_image(const fs::path& path) {
+    return read_image_contents(path).image;
+}
+
+ImageContents read_image_contents(const fs::path& path) {
     const ImageFormat format = image_format(path);
     return naming(path, "read", [&] {
         const Bytes bytes = read_bytes(path, kMaxImageBytes);
@@ -105,7 +109,7 @@ ImageAttributes read_exr_attributes(const fs::path& path) {
 std::shared_ptr<const ImageTexels> read_texture(const fs::path& path, std::int64_t max_texels) {
     return naming(path, "read", [&] {
         const auto max_size = 9 * static_cast<std::uintmax_t>(max_texels) + (1U << 20U);  // 8 bytes a texel, and some
-        Image image = decode_png(read_bytes(path, max_size), kMaxTextureSide, max_texels);
+        Image image = decode_png(read_bytes(path, max_size), kMaxTextureSide, max_texels).image;
         return std::make_shared<const ImageTexels>(
             ImageTexels{static_cast<int>(image.width), static_cast<int>(image.height), std::move(image.rgb)});
     });

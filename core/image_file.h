@@ -9,11 +9,14 @@
 /// InputError naming it, before memory is spent on what it only claims to hold. Thread-safe, for different outputs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/image.h"
 #include "core/scene.h"
@@ -30,6 +33,29 @@ enum class ImageFormat { Png, Exr, Pfm };
 /// What an image carries besides pixels, such as its settings and its hash. Names are ASCII with 1 to 79 characters.
 using ImageAttributes = std::map<std::string, std::string>;
 
+/// A rectangle of pixels; (min_x, min_y) is its top left corner.
+struct ImageWindow {
+    std::int64_t min_x = 0;
+    std::int64_t min_y = 0;
+    std::int64_t width = 0;
+    std::int64_t height = 0;
+
+    bool operator==(const ImageWindow&) const = default;
+};
+
+/// CIE x and y of red, green, blue and white, in this order.
+using Chromaticities = std::array<float, 8>;
+
+/// A file's pixels, and what it holds besides them.
+struct ImageContents {
+    Image image;              ///< the pixels of data_window
+    ImageWindow data_window;  ///< differs from display_window in EXR files only
+    ImageWindow display_window;
+    std::vector<std::string> unread_channels;      ///< in the file, not in `image`: "A", "Z"; of another part "part:Z"
+    std::optional<Chromaticities> chromaticities;  ///< where they are not those of sRGB
+    ImageAttributes attributes;                    ///< those of type string of an EXR file
+};
+
 /// By the extension, in either case; an InputError for any other than .png, .exr and .pfm.
 ImageFormat image_format(const std::filesystem::path& path);
 
@@ -38,6 +64,9 @@ void write_image(const std::filesystem::path& path, const Image& image, const Im
 /// PNG samples of 8 or fewer bits, or 16, become linear by the curve of sRGB, or by the exponent in a gAMA chunk that
 /// says otherwise; alpha and colour profiles are ignored. Of an EXR file this is the data window.
 Image read_image(const std::filesystem::path& path);
+
+/// The same with what read_image() leaves out.
+ImageContents read_image_contents(const std::filesystem::path& path);
 
 /// All attributes of type string in the header of an EXR file.
 ImageAttributes read_exr_attributes(const std::filesystem::path& path);

@@ -54,7 +54,7 @@ Bytes encode_pfm(const Image& image) {
     return bytes;
 }
 
-Image decode_pfm(BytesView bytes) {
+ImageContents decode_pfm(BytesView bytes) {
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (take_word(text) != "PF") throw std::runtime_error("not a PFM file in colour: must begin with PF");
     const auto width = take_number<std::int64_t>(text);
@@ -76,7 +76,7 @@ Image decode_pfm(BytesView bytes) {
     if (scale > 0) {
         for (float& value : image.rgb) value = byte_swapped(value);
     }
-    return image;
+    return contents_of(std::move(image));
 }
 
 }  // namespace raypool

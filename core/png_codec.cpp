@@ -6,10 +6,12 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -99,6 +101,23 @@ bool read_rows(PngReader& reader, png_bytepp rows) {
     return true;
 }
 
+/// Whether pixels have an alpha: a channel, or one that a colour or an entry of the palette stands for.
+bool has_alpha(const PngReader& reader) {
+    return (png_get_color_type(reader.png, reader.info) & PNG_COLOR_MASK_ALPHA) != 0 ||
+           png_get_valid(reader.png, reader.info, PNG_INFO_tRNS) != 0;
+}
+
+std::optional<Chromaticities> chromaticities_of(const PngReader& reader) {
+    std::array<double, 8> xy{};  // white first
+    if (png_get_cHRM(reader.png, reader.info, xy.data(), &xy[1], &xy[2], &xy[3], &xy[4], &xy[5], &xy[6], &xy[7]) == 0)
+        return {};
+    std::rotate(xy.begin(), xy.begin() + 2, xy.end());
+    Chromaticities chromaticities;
+    std::transform(xy.begin(), xy.end(), chromaticities.begin(), [](double x) { return static_cast<float>(x); });
+    if (are_srgb(chromaticities)) return {};
+    return chromaticities;
+}
+
 /// Linear light for every code of `bit_depth` bits.
 std::vector<float> decoding_table(const PngReader& reader, int bit_depth) {
     constexpr double kSrgbGamma = 1 / 2.2;  // what a gAMA chunk says beside sRGB data
@@ -177,7 +196,7 @@ png_text text_chunk(const std::string& name, const std::string& value) {
 
 }  // namespace
 
-Image decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels) {
+ImageContents decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels) {
     check_chunks(bytes);
     PngReader reader(bytes);
     const auto check = [&](bool is_ok) {
@@ -194,6 +213,11 @@ Image decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels
         width * png_get_channels(reader.png, reader.info) * png_get_bit_depth(reader.png, reader.info);
     if (row_bits / 8 * height / 1032 > std::ssize(bytes)) throw std::runtime_error("the file ends too early");
 
+    ImageContents contents;
+    if (has_alpha(reader)) contents.unread_channels.emplace_back("A");
+    contents.chromaticities = chromaticities_of(reader);
+    contents.data_window = contents.display_window = {0, 0, width, height};
+
     check(convert_to_rgb(reader));
     const int bit_depth = png_get_bit_depth(reader.png, reader.info);
     const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
@@ -205,12 +229,12 @@ Image decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels
     check(read_rows(reader, rows.data()));
 
     const std::vector<float> linear = decoding_table(reader, bit_depth);
-    Image image(width, height);
+    contents.image = Image(width, height);
     for (std::size_t i = 0; i < value_count; ++i) {
         const int code = bit_depth == 8 ? codes[i] : codes[2 * i] << 8 | codes[2 * i + 1];
-        image.rgb[i] = linear[static_cast<std::size_t>(code)];
+        contents.image.rgb[i] = linear[static_cast<std::size_t>(code)];
     }
-    return image;
+    return contents;
 }
 
 Bytes encode_png(const Image& image, const ImageAttributes& attributes) {

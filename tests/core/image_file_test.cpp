@@ -4,6 +4,8 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -212,6 +214,60 @@ TEST(ImageFile, ReadsHalfFloatsAndExtraChannelsAndShiftedWindowsOfExr) {
         }
         EXPECT_EQ(read_image(path).rgb, (std::vector<float>{2, 3, 4, 5, 6, 7}));
     }
+}
+
+TEST(ImageContents, TellWhatAnExrFileHoldsBesidesItsPixels) {
+    const ScratchFolder folder;
+    Imf::Header header(20, 10);
+    header.dataWindow().min.x = 5;
+    header.dataWindow().max.x = 6;
+    header.dataWindow().min.y = header.dataWindow().max.y = -3;
+    for (const char* name : {"A", "B", "G", "R", "Z"}) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    Imf::addChromaticities(header, Imf::Chromaticities({0.7F, 0.3F}, {0.2F, 0.7F}, {0.1F, 0.05F}, {0.3F, 0.3F}));
+    header.insert("raypool.hash", Imf::StringAttribute("abc"));
+    const std::array<float, 2> values{1, 2};
+    Imf::FrameBuffer buffer;
+    for (const char* name : {"A", "B", "G", "R", "Z"})
+        buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow()));
+    {
+        Imf::OutputFile file((folder / "a.exr").c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(1);
+    }
+    const ImageContents contents = read_image_contents(folder / "a.exr");
+    EXPECT_EQ(contents.image.rgb, (std::vector<float>{1, 1, 1, 2, 2, 2}));
+    EXPECT_EQ(contents.data_window, (ImageWindow{5, -3, 2, 1}));
+    EXPECT_EQ(contents.display_window, (ImageWindow{0, 0, 20, 10}));
+    EXPECT_EQ(contents.unread_channels, (std::vector<std::string>{"A", "Z"}));
+    EXPECT_EQ(contents.chromaticities, (Chromaticities{0.7F, 0.3F, 0.2F, 0.7F, 0.1F, 0.05F, 0.3F, 0.3F}));
+    EXPECT_EQ(contents.attributes, (ImageAttributes{{"raypool.hash", "abc"}}));
+}
+
+TEST(ImageContents, OfWhatIsWrittenHereAreThePixelsAlone) {
+    const ScratchFolder folder;
+    for (const char* name : {"a.png", "a.exr", "a.pfm"}) {
+        write_image(folder / name, wild_image(3, 2), {});
+        const ImageContents contents = read_image_contents(folder / name);
+        EXPECT_EQ(contents.data_window, (ImageWindow{0, 0, 3, 2})) << name;
+        EXPECT_EQ(contents.display_window, contents.data_window) << name;
+        EXPECT_TRUE(contents.unread_channels.empty()) << name;
+        EXPECT_FALSE(contents.chromaticities) << name;
+        EXPECT_TRUE(contents.attributes.empty()) << name;
+    }
+}
+
+TEST(ImageContents, TellTheAlphaOfAPng) {
+    const ScratchFolder folder;
+    const auto unread = [&](const std::string& bytes) {
+        set_file_text(folder / "a.png", bytes);
+        return read_image_contents(folder / "a.png").unread_channels;
+    };
+    const std::vector<std::string> alpha{"A"};
+    const int none = PNG_INTERLACE_NONE;
+    EXPECT_EQ(unread(png_of(1, 1, 8, PNG_COLOR_TYPE_RGBA, none, 0, {{255, 128, 0, 3}})), alpha);
+    EXPECT_EQ(unread(png_of(1, 1, 8, PNG_COLOR_TYPE_GRAY_ALPHA, none, 0, {{128, 0}})), alpha);
+    EXPECT_EQ(unread(png_of(2, 1, 8, PNG_COLOR_TYPE_PALETTE, none, 0, {{0, 1}})), alpha);
+    EXPECT_TRUE(unread(png_of(1, 1, 8, PNG_COLOR_TYPE_RGB, none, 0, {{255, 128, 0}})).empty());
 }
 
 TEST(Texture, IsThePngInLinearLight) {

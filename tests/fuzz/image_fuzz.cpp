@@ -25,7 +25,8 @@ void try_decoder(Decode decode) {
     }
 }
 
-void check_image(const Image& image) {
+void check_image(const ImageContents& contents) {
+    const Image& image = contents.image;
     require(image.width > 0 && image.height > 0 && std::ssize(image.rgb) == image.width * image.height * 3,
             "an image has three values for each of its pixels");
 }
