@@ -6,10 +6,13 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
-#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfTiledInputPart.h>
 
 #include <algorithm>
 #include <array>
@@ -18,12 +21,13 @@
 #include <utility>
 
 #include "core/exr_header.h"
+#include "core/exr_layer.h"
+#include "core/exr_stream.h"
 #include "core/image_codecs.h"
 
 namespace raypool {
 namespace {
 
-using StreamPosition = decltype(std::declval<Imf::OStream&>().tellp());  // its type changed in version 3
 constexpr std::array<const char*, 3> kChannels{"R", "G", "B"};
 constexpr std::size_t kPixelBytes = 3 * sizeof(float);
 
@@ -46,47 +50,13 @@ class MemoryOutput final : public Imf::OStream {
     std::size_t position_ = 0;
 };
 
-class MemoryInput final : public Imf::IStream {
-  public:
-    explicit MemoryInput(BytesView bytes) : IStream("the file"), bytes_(bytes) {}
-
-    bool read(char target[], int size) override {
-        if (position_ > bytes_.size() || static_cast<std::size_t>(size) > bytes_.size() - position_) {
-            throw std::runtime_error("the file ends too early");
-        }
-        std::memcpy(target, bytes_.data() + position_, static_cast<std::size_t>(size));
-        position_ += static_cast<std::size_t>(size);
-        return position_ < bytes_.size();
-    }
-    StreamPosition tellg() override { return position_; }
-    void seekg(StreamPosition position) override { position_ = position; }
-
-  private:
-    BytesView bytes_;
-    std::size_t position_ = 0;
-};
-
-/// Checks what OpenEXR would take at its word when it reserves memory: attributes, and the sizes of rows and image.
-void check_header(BytesView bytes) {
-    auto [version, channel_count] = check_exr_header(bytes);
-    MemoryInput stream(bytes);
-    stream.seekg(sizeof kExrMagic + sizeof version);
-    Imf::Header header;
-    header.readFrom(stream, version);
-    const auto& window = header.dataWindow();
-    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-    check_image_size(width, std::int64_t{window.max.y} - window.min.y + 1, kMaxImageSide);
-    constexpr std::int64_t kMostRowValues = std::int64_t{1} << 20;  // a codec may want 256 rows at once
-    if (width * channel_count > kMostRowValues) throw std::runtime_error("too many channels for its width");
-}
-
-/// The three channels of the rows in `window`, stored from `first` on.
+/// The channels of the rows in `window`, stored from `first` on, three floats a pixel.
 template <class Window>
-Imf::FrameBuffer frame_buffer(const float* first, const Window& window) {
+Imf::FrameBuffer frame_buffer(const std::vector<std::string>& channels, const float* first, const Window& window) {
     const std::size_t row_bytes = static_cast<std::size_t>(window.max.x - window.min.x + 1) * kPixelBytes;
     Imf::FrameBuffer buffer;
-    for (std::size_t i = 0; i < kChannels.size(); ++i) {
-        buffer.insert(kChannels[i], Imf::Slice::Make(Imf::FLOAT, first + i, window, kPixelBytes, row_bytes));
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        buffer.insert(channels[i], Imf::Slice::Make(Imf::FLOAT, first + i, window, kPixelBytes, row_bytes));
     }
     return buffer;
 }
@@ -114,6 +84,61 @@ ImageAttributes text_attributes(const Imf::Header& header) {
     return attributes;
 }
 
+/// Colour and luminance are read at every pixel, chroma at every other one both ways.
+void check_sampling(const Imf::Header& header, const ExrLayer& layer) {
+    for (const std::string& name : layer.channels()) {
+        const bool is_chroma = layer.kind == ExrLayer::Kind::LuminanceAndChroma && name != layer.channel("Y");
+        const int wanted = is_chroma ? 2 : 1;
+        const Imf::Channel& channel = header.channels()[name];
+        if (channel.xSampling != wanted || channel.ySampling != wanted) {
+            throw std::runtime_error(fmt::format("channel {} must be sampled every {} pixels, got {} x {}", name,
+                                                 wanted, channel.xSampling, channel.ySampling));
+        }
+    }
+}
+
+// Memory grows with the rows that are really there: how far a row may have been compressed depends on the codec.
+
+void read_rows(Imf::MultiPartInputFile& file, const ExrLayer& layer, Image& image) {
+    Imf::InputPart part(file, static_cast<int>(layer.part));
+    const auto window = part.header().dataWindow();
+    const std::int64_t rows_per_step = std::max<std::int64_t>(rows_per_chunk(part.header()), 32);
+    for (std::int64_t row = 0; row < image.height; row += rows_per_step) {
+        const std::int64_t row_end = std::min(row + rows_per_step, image.height);
+        image.rgb.resize(static_cast<std::size_t>(row_end * image.width * 3));
+        auto rows = window;
+        rows.min.y = static_cast<int>(window.min.y + row);
+        rows.max.y = static_cast<int>(window.min.y + row_end - 1);
+        part.setFrameBuffer(frame_buffer(layer.channels(), image.pixel(0, row), rows));
+        part.readPixels(rows.min.y, rows.max.y);
+    }
+}
+
+void read_tiles(Imf::MultiPartInputFile& file, const ExrLayer& layer, Image& image) {
+    Imf::TiledInputPart part(file, static_cast<int>(layer.part));
+    const auto window = part.header().dataWindow();
+    for (int tile = 0; tile < part.numYTiles(); ++tile) {
+        auto rows = part.dataWindowForTile(0, tile);
+        rows.max.x = window.max.x;
+        const std::int64_t row = std::int64_t{rows.min.y} - window.min.y;
+        image.rgb.resize(static_cast<std::size_t>((row + rows.max.y - rows.min.y + 1) * image.width * 3));
+        part.setFrameBuffer(frame_buffer(layer.channels(), image.pixel(0, row), rows));
+        part.readTiles(0, part.numXTiles() - 1, tile, tile);
+    }
+}
+
+/// In half precision, which is all that OpenEXR's own conversion gives.
+void read_chroma(MemoryInput& stream, const ExrLayer& layer, Image& image) {
+    Imf::RgbaInputFile file(stream, layer.layer, 0);
+    const auto window = file.dataWindow();
+    std::vector<Imf::Rgba> row(static_cast<std::size_t>(image.width));
+    file.setFrameBuffer(row.data() - window.min.x, 1, 0);
+    for (int y = window.min.y; y <= window.max.y; ++y) {
+        file.readPixels(y);
+        for (const Imf::Rgba& pixel : row) image.rgb.insert(image.rgb.end(), {pixel.r, pixel.g, pixel.b});
+    }
+}
+
 }  // namespace
 
 Bytes encode_exr(const Image& image, const ImageAttributes& attributes) {
@@ -125,57 +150,51 @@ Bytes encode_exr(const Image& image, const ImageAttributes& attributes) {
     MemoryOutput stream;
     {
         Imf::OutputFile file(stream, header);  // complete only after its destructor
-        file.setFrameBuffer(frame_buffer(image.rgb.data(), header.dataWindow()));
+        file.setFrameBuffer(frame_buffer({kChannels.begin(), kChannels.end()}, image.rgb.data(), header.dataWindow()));
         file.writePixels(static_cast<int>(image.height));
     }
     return std::move(stream.bytes);
 }
 
 ImageContents decode_exr(BytesView bytes) {
-    check_header(bytes);
+    const std::vector<ExrPart> parts = read_exr_headers(bytes);
+    const ExrLayer layer = exr_layer(parts);
+    const ExrPart& part = parts[layer.part];
+    const bool has_chroma = layer.kind == ExrLayer::Kind::LuminanceAndChroma;
+    check_sampling(part.header, layer);
+    if (has_chroma && parts.size() > 1)
+        throw std::runtime_error("luminance and chroma must not be one part of several");
+
+    ImageContents contents;
+    contents.image.width = window_of(part.header.dataWindow()).width;
+    contents.image.height = window_of(part.header.dataWindow()).height;
     MemoryInput stream(bytes);
-    Imf::InputFile file(stream);
-    for (const char* channel : kChannels) {
-        if (file.header().channels().findChannel(channel) == nullptr) {
-            throw std::runtime_error("must have channels R, G and B");
+    if (has_chroma) {
+        read_chroma(stream, layer, contents.image);
+    } else {
+        constexpr int kNoThreads = 0;
+        constexpr bool kMendsTable = true;
+        Imf::MultiPartInputFile file(stream, kNoThreads, !kMendsTable);  // what a table lacks, the file lacks
+        if (part.is_tiled) {
+            read_tiles(file, layer, contents.image);
+        } else {
+            read_rows(file, layer, contents.image);
         }
     }
-    const auto window = file.header().dataWindow();
-    Image image;
-    image.width = std::int64_t{window.max.x} - window.min.x + 1;
-    image.height = std::int64_t{window.max.y} - window.min.y + 1;
-
-    // Memory grows with the rows that are really there: how far a row may have been compressed depends on the codec.
-    // A step is a multiple of the rows in a block.
-    const std::int64_t rows_per_step = file.header().compression() == Imf::DWAB_COMPRESSION ? 256 : 32;
-    for (std::int64_t row = 0; row < image.height; row += rows_per_step) {
-        const std::int64_t row_end = std::min(row + rows_per_step, image.height);
-        image.rgb.resize(static_cast<std::size_t>(row_end * image.width * 3));
-        auto rows = window;
-        rows.min.y = static_cast<int>(window.min.y + row);
-        rows.max.y = static_cast<int>(window.min.y + row_end - 1);
-        file.setFrameBuffer(frame_buffer(image.pixel(0, row), rows));
-        file.readPixels(rows.min.y, rows.max.y);
+    if (layer.kind == ExrLayer::Kind::Luminance) {
+        std::vector<float>& rgb = contents.image.rgb;
+        for (std::size_t i = 0; i < rgb.size(); i += 3) rgb[i + 1] = rgb[i + 2] = rgb[i];
     }
-    ImageContents contents;
-    contents.image = std::move(image);
-    contents.data_window = window_of(window);
-    contents.display_window = window_of(file.header().displayWindow());
-    for (auto channel = file.header().channels().begin(); channel != file.header().channels().end(); ++channel) {
-        if (std::find_if(kChannels.begin(), kChannels.end(),
-                         [&](const char* name) { return std::strcmp(name, channel.name()) == 0; }) == kChannels.end())
-            contents.unread_channels.emplace_back(channel.name());
-    }
-    contents.chromaticities = chromaticities_of(file.header());
-    contents.attributes = text_attributes(file.header());
+    contents.data_window = window_of(part.header.dataWindow());
+    contents.display_window = window_of(part.header.displayWindow());
+    contents.unread_channels = other_channels(parts, layer);
+    contents.chromaticities = chromaticities_of(part.header);
+    contents.attributes = text_attributes(part.header);
     return contents;
 }
 
 ImageAttributes decode_exr_attributes(BytesView bytes) {
-    check_header(bytes);
-    MemoryInput stream(bytes);
-    const Imf::InputFile file(stream);
-    return text_attributes(file.header());
+    return text_attributes(read_exr_headers(bytes).at(0).header);
 }
 
 }  // namespace raypool

@@ -1,26 +1,32 @@
-/// The attributes at the front of an EXR file, looked over before OpenEXR reads them.
+/// The headers at the front of an EXR file, looked over before OpenEXR reads pixels by them.
 ///
 /// OpenEXR reads most types of attribute without regard to the size that the file gives, reads on from wherever that
-/// leads, and reserves what it finds there as a size. So every attribute must take exactly the size that it is given.
+/// leads, and reserves what it finds there as a size. So every attribute must take exactly the size that it is given;
+/// one of a type that OpenEXR does not know is skipped by its size. And OpenEXR reserves the table of chunks and room
+/// for a chunk by what a header claims, so these must be in proportion to the file.
 /// Layout: https://openexr.com/en/latest/OpenEXRFileLayout.html
 /// Called by exr_codec.cpp.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
+#include <OpenEXR/ImfHeader.h>
+
+#include <vector>
 
 #include "core/image_codecs.h"
 
 namespace raypool {
 
-inline constexpr std::int32_t kExrMagic = 20000630;
-
-struct ExrHeader {
-    std::int32_t version;  ///< with its flags
-    std::int64_t channel_count;
+struct ExrPart {
+    Imf::Header header;
+    bool is_deep;   ///< any number of values a pixel
+    bool is_tiled;  ///< in tiles, otherwise in scan lines
 };
 
-/// Throws std::runtime_error for what is not a file of one part of scan lines with sound attributes.
-ExrHeader check_exr_header(BytesView bytes);
+/// All parts of a file, one if it is not of several. Throws std::runtime_error where a header is unsound, or claims
+/// more than kMaxImageSide, than kMaxImagePixels, or than a file of this size can hold.
+std::vector<ExrPart> read_exr_headers(BytesView bytes);
+
+/// Rows that the part's codec takes together.
+std::int64_t rows_per_chunk(const Imf::Header& header);
 
 }  // namespace raypool

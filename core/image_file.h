@@ -1,8 +1,9 @@
 /// Image files: PNG, OpenEXR and PFM, written whole or not at all, read without trusting them.
 ///
 /// PNG: 8 bits a channel, coded with the curve of sRGB, clamped to [0, 1], NaN as black. Lossy.
-/// EXR: 32-bit floats, ZIP-compressed; one part of scan lines with channels R, G and B (half or float) is read.
-/// PFM: 32-bit floats, bottom row first; written little endian, read in both byte orders. Carries no attributes.
+/// EXR: 32-bit floats, ZIP-compressed; read as OpenEXR reads it, whatever program wrote it (docs/image-files.md).
+/// PFM: 32-bit floats, bottom row first; written little endian in colour, read in both byte orders and in grey. Carries
+/// no attributes.
 /// EXR and PFM keep every bit. The bytes of a file depend on the image and the attributes only.
 ///
 /// Called by the command and by the scene reader. A file that is absent, broken, or larger than the limits throws an

@@ -27,29 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(ImageFile, RefusesExrFilesOfAnotherShape) {
-    const ScratchFolder folder;
-    {
-        Imf::Header header(2, 2);
-        header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
-        const std::array<float, 4> values{};
-        Imf::FrameBuffer buffer;
-        buffer.insert("Y", Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow()));
-        Imf::OutputFile file((folder / "grey.exr").c_str(), header);
-        file.setFrameBuffer(buffer);
-        file.writePixels(2);
-    }
-    {
-        Imf::Header header(2, 2);
-        header.channels().insert("R", Imf::Channel(Imf::FLOAT));
-        header.setTileDescription(Imf::TileDescription(2, 2));
-        Imf::TiledOutputFile file((folder / "tiled.exr").c_str(), header);
-    }
-    EXPECT_EQ(refusal(folder / "grey.exr"), "must have channels R, G and B");
-    EXPECT_EQ(refusal(folder / "tiled.exr"),
-              "must be version 2 and one part of scan lines: no tiles, deep data or parts");
-}
-
 TEST(ImageFile, RefusesWhatIsNotAReadableFile) {
     const ScratchFolder folder;
     fs::create_directory(folder / "folder.png");
@@ -58,12 +35,14 @@ TEST(ImageFile, RefusesWhatIsNotAReadableFile) {
     set_file_text(folder / "empty.pfm", "");
     set_file_text(folder / "text.png", "this is not a picture");
     set_file_text(folder / "text.exr", "this is not a picture");
-    set_file_text(folder / "grey.pfm", std::string("Pf\n1 1\n-1.0\n\0\0\0\0", 16));
+    set_file_text(folder / "rgba.pfm", std::string("PF4\n1 1\n-1.0\n\0\0\0\0", 17));
+    set_file_text(folder / "map.pfm", "P6 1 1 255 rgb");
     EXPECT_EQ(refusal(folder / "absent.png"), "No such file or directory");
     EXPECT_EQ(refusal(folder / "folder.png"), "Is a directory");
     EXPECT_EQ(refusal(folder / "text.png"), "not a PNG file");
     EXPECT_EQ(refusal(folder / "text.exr"), "not an EXR file");
-    EXPECT_EQ(refusal(folder / "grey.pfm"), "not a PFM file in colour: must begin with PF");
+    EXPECT_EQ(refusal(folder / "rgba.pfm"), "must be PF (colour) or Pf (grey), and no other kind of PFM");
+    EXPECT_EQ(refusal(folder / "map.pfm"), "not a PFM file: must begin with PF or Pf");
     for (const char* name : {"empty.png", "empty.exr", "empty.pfm"}) EXPECT_NE(refusal(folder / name), "") << name;
 }
 

@@ -10,6 +10,7 @@
 #include <png.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -187,6 +188,27 @@ TEST(ImageFile, ReadsPfmInBothByteOrders) {
     set_file_text(folder / "big.pfm", std::string("PF 1 1 1.0\n\x3f\x80\0\0\x40\0\0\0\xc0\0\0\0", 23));
     EXPECT_EQ(read_image(folder / "little.pfm").rgb, (std::vector<float>{1, 2, -2}));
     EXPECT_EQ(read_image(folder / "big.pfm").rgb, (std::vector<float>{1, 2, -2}));
+}
+
+TEST(ImageFile, ReadsGreyPfmAndEveryHeaderThatReadersAgreeOn) {
+    const ScratchFolder folder;
+    const std::string colour("\0\0\x80\x3f\0\0\0\x40\0\0\0\xc0", 12);
+    const std::string grey("\x0a\0\x80\x3f\0\0\0\x40", 8);  // begins like a line feed
+    const auto read = [&](const std::string& bytes) {
+        set_file_text(folder / "a.pfm", bytes);
+        return read_image(folder / "a.pfm").rgb;
+    };
+    const float first = std::bit_cast<float>(0x3f80000aU);
+    const std::vector<float> colours{1, 2, -2}, greys{first, first, first, 2, 2, 2};
+    for (const char* header : {"PF\n1 1\n-1\n", "PF\r\n1 1\r\n-1.0\r\n", "PF 1  1\t-1 ", "PF\n\n1\n1\n\n-1\n",
+                               "PF\n# made by hand\n1 1 # one\n#\n-1\n", "PF\n1 1\n-1\r"}) {
+        EXPECT_EQ(read(header + colour), colours) << header;
+    }
+    for (const char* header : {"Pf\n2 1\n-1\n", "Pf\r\n2 1\r\n-1\r\n", "Pf 2 1 -1\r"}) {
+        EXPECT_EQ(read(header + grey), greys) << header;
+    }
+    // Two grey rows, the bottom one first, in the other byte order.
+    EXPECT_EQ(read(std::string("Pf\n1 2\n1\n\x3f\x80\0\0\x40\0\0\0", 17)), (std::vector<float>{2, 2, 2, 1, 1, 1}));
 }
 
 TEST(ImageFile, ReadsHalfFloatsAndExtraChannelsAndShiftedWindowsOfExr) {
