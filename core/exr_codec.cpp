@@ -157,7 +157,8 @@ Bytes encode_exr(const Image& image, const ImageAttributes& attributes) {
 }
 
 ImageContents decode_exr(BytesView bytes) {
-    const std::vector<ExrPart> parts = read_exr_headers(bytes);
+    const ExrHeaders headers = read_exr_headers(bytes);
+    const std::vector<ExrPart>& parts = headers.parts;
     const ExrLayer layer = exr_layer(parts);
     const ExrPart& part = parts[layer.part];
     const bool has_chroma = layer.kind == ExrLayer::Kind::LuminanceAndChroma;
@@ -168,7 +169,7 @@ ImageContents decode_exr(BytesView bytes) {
     ImageContents contents;
     contents.image.width = window_of(part.header.dataWindow()).width;
     contents.image.height = window_of(part.header.dataWindow()).height;
-    MemoryInput stream(bytes);
+    MemoryInput stream(bytes, headers.hidden);
     if (has_chroma) {
         read_chroma(stream, layer, contents.image);
     } else {
@@ -194,7 +195,7 @@ ImageContents decode_exr(BytesView bytes) {
 }
 
 ImageAttributes decode_exr_attributes(BytesView bytes) {
-    return text_attributes(read_exr_headers(bytes).at(0).header);
+    return text_attributes(read_exr_headers(bytes).parts[0].header);
 }
 
 }  // namespace raypool

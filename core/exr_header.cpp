@@ -89,8 +89,9 @@ void take_preview(Walk& value) {
     value.take(texels > SIZE_MAX / kTexelBytes ? SIZE_MAX : texels * kTexelBytes);
 }
 
-/// Takes what OpenEXR would take for a value of the type; a type that it does not know it takes by the size.
-void take_value(std::string_view type, Walk& value, std::size_t size) {
+/// Takes what OpenEXR would take for a value of the type. False if the type is none of those it reads alike in all its
+/// versions.
+bool take_value(std::string_view type, Walk& value, std::size_t size) {
     const auto* const fixed = std::find_if(kFixedTypes.begin(), kFixedTypes.end(),
                                            [&](const FixedType& candidate) { return candidate.name == type; });
     if (fixed != kFixedTypes.end()) {
@@ -103,17 +104,19 @@ void take_value(std::string_view type, Walk& value, std::size_t size) {
         while (!value.is_at_end()) value.take_sized();
     } else if (type == "preview") {
         take_preview(value);
-    } else if (type == "idmanifest") {
-        value.take(sizeof(std::int32_t));  // then all that is left
-        value.take(size - sizeof(std::int32_t));
+    } else if (type == "string") {
+        value.take(size);
     } else {
         value.take(size);
+        return false;
     }
+    return true;
 }
 
-/// Checks all attributes; returns the version with its flags.
-std::int32_t check_attributes(BytesView bytes) {
-    Walk walk({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+/// Checks all attributes, notes the types that OpenEXR must not see; returns the version with its flags.
+std::int32_t check_attributes(BytesView bytes, std::vector<std::size_t>& hidden) {
+    const auto* const begin = reinterpret_cast<const char*>(bytes.data());
+    Walk walk({begin, bytes.size()});
     if (walk.take_int() != Imf::MAGIC) throw std::runtime_error("not an EXR file");
     const std::int32_t version = walk.take_int();
     if (Imf::getVersion(version) != 2 || !Imf::supportsFlags(Imf::getFlags(version))) {
@@ -125,7 +128,9 @@ std::int32_t check_attributes(BytesView bytes) {
             const std::string_view type = walk.take_name();
             const std::string_view content = walk.take_sized();
             Walk value(content);
-            take_value(type, value, content.size());
+            if (!take_value(type, value, content.size()) && !type.empty()) {
+                hidden.push_back(static_cast<std::size_t>(type.data() - begin));
+            }
             if (!value.is_at_end()) throw std::runtime_error("an attribute is longer than its type");
         }
     }
@@ -191,11 +196,11 @@ std::int64_t rows_per_chunk(const Imf::Header& header) {
     }
 }
 
-std::vector<ExrPart> read_exr_headers(BytesView bytes) {
-    int version = check_attributes(bytes);
-    MemoryInput stream(bytes);
+ExrHeaders read_exr_headers(BytesView bytes) {
+    ExrHeaders headers;
+    int version = check_attributes(bytes, headers.hidden);
+    MemoryInput stream(bytes, headers.hidden);
     stream.seekg(sizeof Imf::MAGIC + sizeof version);
-    std::vector<ExrPart> parts;
     std::int64_t chunk_count = 0;
     do {
         Imf::Header header;
@@ -205,13 +210,13 @@ std::vector<ExrPart> read_exr_headers(BytesView bytes) {
         if (header.hasType()) part.is_deep = Imf::isDeepData(header.type());
         if (Imf::isMultiPart(version) && header.hasType()) part.is_tiled = Imf::isTiled(header.type());
         chunk_count += check_sizes(part, bytes.size());
-        parts.push_back(std::move(part));
+        headers.parts.push_back(std::move(part));
     } while (Imf::isMultiPart(version));
-    if (parts.empty()) throw std::runtime_error("must have at least one part");
+    if (headers.parts.empty()) throw std::runtime_error("must have at least one part");
     if (chunk_count > static_cast<std::int64_t>(bytes.size() / sizeof(std::uint64_t))) {
         throw std::runtime_error("the file ends too early for its number of blocks");
     }
-    return parts;
+    return headers;
 }
 
 }  // namespace raypool

@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <gtest/gtest.h>
 #include <png.h>
+#include <zlib.h>
 
 #include <array>
 #include <bit>
@@ -290,6 +291,27 @@ TEST(ImageContents, TellTheAlphaOfAPng) {
     EXPECT_EQ(unread(png_of(1, 1, 8, PNG_COLOR_TYPE_GRAY_ALPHA, none, 0, {{128, 0}})), alpha);
     EXPECT_EQ(unread(png_of(2, 1, 8, PNG_COLOR_TYPE_PALETTE, none, 0, {{0, 1}})), alpha);
     EXPECT_TRUE(unread(png_of(1, 1, 8, PNG_COLOR_TYPE_RGB, none, 0, {{255, 128, 0}})).empty());
+}
+
+TEST(ImageContents, TellThePrimariesOfAPngThatAreNotThoseOfSrgb) {
+    const ScratchFolder folder;
+    const auto read = [&](const std::array<std::uint32_t, 8>& hundred_thousandths) {  // white first
+        std::string chunk = "cHRM";
+        for (const std::uint32_t value : hundred_thousandths)
+            for (int shift = 24; shift >= 0; shift -= 8) chunk += static_cast<char>(value >> shift);
+        const auto sum = static_cast<std::uint32_t>(
+            crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), static_cast<uInt>(chunk.size())));
+        for (int shift = 24; shift >= 0; shift -= 8) chunk += static_cast<char>(sum >> shift);
+        constexpr std::size_t kEndOfHeader = 33;
+        std::string bytes = png_of(1, 1, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, 0, {{255, 128, 0}});
+        bytes.insert(kEndOfHeader, std::string("\0\0\0\x20", 4) + chunk);
+        set_file_text(folder / "a.png", bytes);
+        return read_image_contents(folder / "a.png").chromaticities;
+    };
+    EXPECT_FALSE(read({31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000}));
+    const auto wide = read({31270, 32900, 70800, 29200, 17000, 79700, 13100, 4600});
+    ASSERT_TRUE(wide);
+    EXPECT_EQ(*wide, (Chromaticities{0.708F, 0.292F, 0.17F, 0.797F, 0.131F, 0.046F, 0.3127F, 0.329F}));
 }
 
 TEST(Texture, IsThePngInLinearLight) {
