@@ -108,7 +108,7 @@ void accumulate(benchmark::State& state, const Kind& kind, Pixels pixels) {
     Framebuffer expected = empty_framebuffer();
     auto accumulator = make_accumulator<float>(kind.accumulator, framebuffer, threads);
     add_all(*accumulator, deposits, framebuffer.fixed_point());
-    accumulator->finish();
+    merge_all(*accumulator);
     for (const auto& of_thread : deposits) {
         SampleConverter converter(expected.fixed_point());
         for (const Deposits<float>& batch : of_thread)
@@ -117,7 +117,7 @@ void accumulate(benchmark::State& state, const Kind& kind, Pixels pixels) {
     }
     if (!agree(state, sums_agree(framebuffer, expected, kind.is_exact), "the sums are wrong")) return;
 
-    // What finish() does once at the end of a render is not timed.
+    // What merge() does once at the end of a render is not timed.
     accumulator = make_accumulator<float>(kind.accumulator, framebuffer, threads);
     for (auto _ : state) add_all(*accumulator, deposits, framebuffer.fixed_point());
     std::size_t count = 0;
@@ -149,10 +149,28 @@ std::vector<Deposit> pool_order() {
     settings.end_sample = 4;
     Recorder recorder;
     const RenderContext<float> context{
-        paper_scene(), settings, kPool, random_seed(settings.seed, settings.sampler), StageRig<float>::roomy(), recorder};
+        paper_scene(), settings, kPool, random_seed(settings.seed, settings.sampler), StageRig<float>::roomy(),
+        recorder};
     InPlacePool<kPaper, float> pool(PoolSettings::kSharedCapacity, static_cast<std::size_t>(kPool.batch), 0);
-    ThreadRounds rounds(1);
-    render_shared_pool<kPaper, Lanes, NoWorkCount, Splitting::Off>(context, pool, rounds);
+    Stages<kPaper, Lanes, NoWorkCount, Splitting::Off> stages(context, pool.batch(), 0);
+    const CameraPaths image(RenderUnit{0, settings.end_sample, nullptr}, paper_scene().width, paper_scene().height);
+    PathCounter camera(image.left());
+    const FlushDenormals flush;
+    do {  // the rounds of SharedPoolSession, in one thread
+        const bool takes_camera = pool.is_empty();
+        for (std::int64_t b = 0; b < pool.batch_count(); ++b) {
+            const std::size_t survivors = stages.advance(pool.records(), pool.first(b), pool.count(b));
+            std::size_t end = stages.pass_on(pool, b, pool.first(b), survivors);
+            for (std::size_t room = takes_camera ? pool.room(b) : 0; room > 0;) {
+                const PathCounter::Part part = camera.take(std::min(room, kCameraChunk));
+                if (part.count == 0) break;
+                room -= static_cast<std::size_t>(part.count);
+                end = stages.pass_on(pool, b, end,
+                                     stages.generate(pool.records(), end, image.part(part.begin, part.count)));
+            }
+        }
+        pool.end_round([] {});
+    } while (!pool.is_empty() || !camera.is_done());
     return std::move(recorder.all());
 }
 
@@ -182,7 +200,7 @@ std::string hash_of(const Layout& layout, const std::vector<Deposits<float>>& de
     const auto accumulator = make_accumulator<float>(layout.accumulator, framebuffer, 1);
     SampleConverter converter(framebuffer.fixed_point());
     for (const Deposits<float>& batch : deposits) accumulator->add(batch, converter, 0);
-    accumulator->finish();
+    merge_all(*accumulator);
     return framebuffer.hash();
 }
 

@@ -116,7 +116,8 @@ void append(benchmark::State& state, Append strategy, std::size_t capacity) {
     time_prepared(
         state, [&] { refill(*pool, threads, next_serial); }, [&] { survive(*pool, threads); });
     count_rays(state, static_cast<std::int64_t>(capacity),
-               static_cast<double>(pool->bytes()) / static_cast<double>(capacity));
+               static_cast<double>(shared_pool_bytes<kPaper, float>(strategy, {capacity, kBatch, 0}, threads)) /
+                   static_cast<double>(capacity));
 }
 
 }  // namespace

@@ -10,12 +10,14 @@
 #include "bench/accuracy/advise.h"
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/print.h"
 #include "cli/progress_bar.h"
-#include "cli/stats_json.h"
 #include "core/environment.h"
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/output_file.h"
 #include "core/scene_reader.h"
+#include "core/text.h"
 
 namespace raypool::cli {
 
@@ -37,58 +39,50 @@ struct AdviseCommand {
     bool is_quiet = false;
 };
 
-/// As a shell reads it.
-std::string quoted(const std::string& text) {
-    if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-") ==
-        std::string::npos)
-        return text;
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? "'\\''" : std::string(1, c);
-    return result + "'";
-}
-
 std::string render_line(const AdviseCommand& command, const Offer& offer, int threads) {
-    return fmt::format("raypool render {}{} --spp {} {} --threads {}", quoted(command.scene),
+    return fmt::format("raypool render {}{} --spp {} {} --threads {}", shell_word(command.scene),
                        command.width == 0 ? "" : fmt::format(" --width {}", command.width), offer.spp,
                        render_flags(offer.pilot.configuration), threads);
 }
 
-std::string bias_text(const Estimate& bias) {
-    if (bias.value == 0 && bias.error == 0) return "0";
-    return bias.value > 2 * bias.error ? fmt::format("{:.1e}", std::sqrt(bias.value))
-                                       : fmt::format("< {:.1e}", std::sqrt(std::max(bias.value, 0.0) + 2 * bias.error));
+/// A bias that was found, or else what it is below, light that was not seen included.
+std::string bias_text(const Estimate& bias, double unseen) {
+    const double most = std::sqrt(std::max(bias.value + 2 * bias.error, 0.0)) + unseen;
+    if (most == 0) return "0";
+    return bias.value > 2 * bias.error && unseen < std::sqrt(bias.value) ? fmt::format("{:.1e}", std::sqrt(bias.value))
+                                                                         : fmt::format("< {:.1e}", most);
 }
 
 void print_offer(const Offer& offer) {
-    fmt::print("RMSE {:.3g} ({:.3g} to {:.3g}), of which bias {}; {:.3g} s ({:.3g} to {:.3g})\n", offer.error,
-               offer.error_interval.low, offer.error_interval.high, bias_text(offer.pilot.bias), offer.seconds,
-               offer.seconds_interval.low, offer.seconds_interval.high);
+    print("RMSE {:.3g} ({:.3g} to {:.3g}), of which bias {}; {:.3g} s ({:.3g} to {:.3g})\n", offer.error,
+          offer.error_interval.low, offer.error_interval.high, bias_text(offer.pilot.bias, offer.pilot.unseen_bias),
+          offer.seconds, offer.seconds_interval.low, offer.seconds_interval.high);
 }
 
-void print(const Advice& advice, const AdviseCommand& command, int threads) {
-    fmt::print("{}: needs {}\n", command.scene,
-               advice.needs.empty() ? "nothing" : fmt::format("{}", fmt::join(advice.needs, ", ")));
-    fmt::print("tried at {} x {} with {} seeds, {} thread{}, and the best {} at {} x {}\n\n", advice.pilot_width,
-               advice.pilot_height, advice.pilot_seeds, threads, threads == 1 ? "" : "s", advice.offers.size(),
-               advice.width, advice.height);
-    fmt::print("{:<44} {:>12} {:>11} {:>11} {:>13}\n", "what one change does", "bias (RMSE)", "time of", "MSE of",
-               "time to");
-    fmt::print("{:<44} {:>12} {:>11} {:>11} {:>13}\n", "", "", "a sample", "a sample", "equal noise");
+void print_advice(const Advice& advice, const AdviseCommand& command, int threads) {
+    print("{}: needs {}\n", command.scene,
+          advice.needs.empty() ? "nothing" : fmt::format("{}", fmt::join(advice.needs, ", ")));
+    print("tried at {} x {} with {} seeds, {} thread{}, and the best {} at {} x {}\n\n", advice.pilot_width,
+          advice.pilot_height, advice.pilot_seeds, threads, threads == 1 ? "" : "s", advice.offers.size(), advice.width,
+          advice.height);
+    print("{:<44} {:>12} {:>11} {:>11} {:>13}\n", "what one change does", "bias (RMSE)", "time of", "MSE of",
+          "time to");
+    print("{:<44} {:>12} {:>11} {:>11} {:>13}\n", "", "", "a sample", "a sample", "equal noise");
     for (const Simplification& s : advice.simplifications)
-        fmt::print("{:<44} {:>12} {:>11.2f} {:>11.2f} {:>13.2f}\n", s.text, bias_text(s.bias), s.time, s.noise,
-                   s.time * s.noise);
-    fmt::print("\n");
+        print("{:<44} {:>12} {:>11.2f} {:>11.2f} {:>13.2f}\n", s.text, bias_text(s.bias, s.unseen_bias), s.time,
+              s.noise, s.time * s.noise);
+    print("\n");
     for (std::size_t i = 1; i < advice.offers.size(); ++i) {
-        fmt::print("next best: {}, {} spp: ", to_string(advice.offers[i].pilot.configuration), advice.offers[i].spp);
+        print("next best: {}, {} spp: ", to_string(advice.offers[i].pilot.configuration), advice.offers[i].spp);
         print_offer(advice.offers[i]);
     }
-    fmt::print("predicted: ");
+    print("predicted: ");
     print_offer(advice.offers.front());
-    fmt::print("{}\n", render_line(command, advice.offers.front(), threads));
+    print("{}\n", render_line(command, advice.offers.front(), threads));
 }
 
-nlohmann::json bias_json(const Estimate& bias) {
-    return {{"squared", bias.value}, {"standard_error", bias.error}};
+nlohmann::json bias_json(const Estimate& bias, double unseen) {
+    return {{"squared", bias.value}, {"standard_error", bias.error}, {"unseen", unseen}};
 }
 
 nlohmann::json advice_json(const Advice& advice, const AdviseCommand& command, int threads) {
@@ -101,12 +95,13 @@ nlohmann::json advice_json(const Advice& advice, const AdviseCommand& command, i
                           {"seconds_interval", {o.seconds_interval.low, o.seconds_interval.high}},
                           {"rmse", o.error},
                           {"rmse_interval", {o.error_interval.low, o.error_interval.high}},
-                          {"bias", bias_json(o.pilot.bias)},
+                          {"bias", bias_json(o.pilot.bias, o.pilot.unseen_bias)},
                           {"slope_of_mse", o.pilot.slope},
                           {"pilot_spp", o.pilot.spp}});
     nlohmann::json changes = nlohmann::json::array();
     for (const Simplification& s : advice.simplifications)
-        changes.push_back({{"what", s.text}, {"bias", bias_json(s.bias)}, {"time", s.time}, {"mse", s.noise}});
+        changes.push_back(
+            {{"what", s.text}, {"bias", bias_json(s.bias, s.unseen_bias)}, {"time", s.time}, {"mse", s.noise}});
     nlohmann::json target = nlohmann::json::object();
     if (command.target_error) target["error"] = *command.target_error;
     if (command.target_time) target["seconds"] = *command.target_time;
@@ -125,6 +120,7 @@ nlohmann::json advice_json(const Advice& advice, const AdviseCommand& command, i
 void advise(const AdviseCommand& command) {
     if (command.target_error.has_value() == command.target_time.has_value())
         throw InputError("advise: needs one of --target-error and --target-time");
+    check_distinct({{"--json", command.json}}, {{"the scene", command.scene}});
     if (!command.json.empty()) check_writable(command.json);
     Scene scene = load_scene(command.scene);
     if (command.width != 0) set_width(scene, command.width);
@@ -140,8 +136,8 @@ void advise(const AdviseCommand& command) {
     }
     if (!command.json.empty()) write_json(command.json, advice_json(advice, command, options.threads));
     if (command.is_quiet) return;
-    print(advice, command, options.threads);
-    if (!command.json.empty()) fmt::print("{}\n", command.json);
+    print_advice(advice, command, options.threads);
+    if (!command.json.empty()) print("{}\n", command.json);
 }
 
 }  // namespace

@@ -1,9 +1,8 @@
-#include <omp.h>
-
 #include <algorithm>
 #include <functional>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +13,10 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/pool_options.h"
-#include "cli/stats_json.h"
+#include "cli/print.h"
 #include "core/environment.h"
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/output_file.h"
 #include "core/scene_reader.h"
 #include "recursive/engine.h"
@@ -43,11 +43,11 @@ struct CompareOptions {
     std::int64_t width = 0;
     std::int64_t depth = 50;
     int split_depth = 0;
-    std::uint64_t seed = 0;
+    std::string seed = "0";
     std::string sampler = "independent";
     bool roulette = false;
     int threads = 0;
-    std::string schedule;
+    std::optional<std::string> schedule;
     std::string grain = "line";
     int repeats = 5;
     bool only_check = false;
@@ -136,16 +136,17 @@ void run_all(std::vector<Contender>& list, std::size_t turn, const CompiledScene
 }
 
 void print_table(const std::vector<Contender>& list) {
-    fmt::print("{:<14} {:>9} {:>22} {:>9} {:>8} {:>7} {:>9}  {}\n", "engine", "M paths/s", "ratio (low to high)",
-               "load", "waiting", "bytes", "pools", "hash");
+    print("{:<14} {:>9} {:>22} {:>9} {:>8} {:>7} {:>9}  {}\n", "engine", "M paths/s", "ratio (low to high)", "load",
+          "waiting", "bytes", "pools", "hash");
     for (const Contender& contender : list) {
         const studies::Spread rate = studies::spread(contender.rate);
         const studies::Spread ratio = studies::spread(contender.ratio);
-        fmt::print("{:<14} {:>9.2f} {:>6.2f} ({:>5.2f} to {:>5.2f}) {:>9.3f} {:>6.1f} % {:>7} {:>6.2f} MB  {}\n",
-                   contender.name, rate.median, ratio.median, ratio.low, ratio.high, load_imbalance(contender.last),
-                   100 * studies::waiting(contender.last), contender.last.record_bytes,
-                   static_cast<double>(contender.last.pool_bytes) / (1024 * 1024), contender.hash);
+        print("{:<14} {:>9.2f} {:>6.2f} ({:>5.2f} to {:>5.2f}) {:>9.3f} {:>6.1f} % {:>7} {:>6.2f} MB  {}\n",
+              contender.name, rate.median, ratio.median, ratio.low, ratio.high, load_imbalance(contender.last),
+              100 * studies::waiting(contender.last), contender.last.record_bytes,
+              static_cast<double>(contender.last.pool_bytes) / (1024 * 1024), contender.hash);
     }
+    print("not timed, of any engine: the scene's reading and its tables, the framebuffer's making and its hash\n");
 }
 
 nlohmann::json table_json(const std::vector<Contender>& list) {
@@ -161,6 +162,7 @@ nlohmann::json table_json(const std::vector<Contender>& list) {
                         {"segments", contender.last.segments()},
                         {"load_max_over_mean", load_imbalance(contender.last)},
                         {"waiting", studies::waiting(contender.last)},
+                        {"setup_s", contender.last.setup_s},
                         {"record_bytes", contender.last.record_bytes},
                         {"pool_bytes", contender.last.pool_bytes},
                         {"pool", contender.pool}});
@@ -171,6 +173,7 @@ nlohmann::json table_json(const std::vector<Contender>& list) {
 int compare(const CompareOptions& options) {
     if (kIsDebugBuild && !options.only_check)
         throw InputError("compare: a debug build does not time; build in Release, or add --check");
+    check_distinct({{"--json", options.json}}, {{"the scene", options.scene}});
     if (!options.json.empty()) check_writable(options.json);
     Scene scene = load_scene(options.scene);
     if (options.width != 0) set_width(scene, options.width);
@@ -180,11 +183,11 @@ int compare(const CompareOptions& options) {
     settings.end_sample = options.spp;
     settings.depth = static_cast<std::int32_t>(options.depth);
     settings.split_depth = options.split_depth;
-    settings.seed = options.seed;
+    settings.seed = parse_seed(options.seed);
     settings.sampler = parse_sampler(options.sampler);
     settings.roulette = options.roulette;
-    settings.threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
-    settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
+    settings.threads = thread_count(options.threads);
+    settings.schedule = options.schedule ? parse_schedule(*options.schedule) : default_schedule();
     settings.grain = parse_grain(options.grain);
 
     const bool with_peers =
@@ -197,18 +200,18 @@ int compare(const CompareOptions& options) {
     for (const Contender& contender : list)
         is_same = is_same && (contender.is_peer || (contender.hash == list.front().hash &&
                                                     contender.last.segments() == list.front().last.segments()));
-    fmt::print("{}: {} x {}, {} spp, depth {}, {} thread{}, {} interleaved run{}\n", scene.name, scene.width,
-               scene.height, options.spp, settings.depth, settings.threads, settings.threads == 1 ? "" : "s", repeats,
-               repeats == 1 ? "" : "s");
+    print("{}: {} x {}, {} spp, depth {}, {} thread{}, {} interleaved run{}\n", scene.name, scene.width, scene.height,
+          options.spp, settings.depth, settings.threads, settings.threads == 1 ? "" : "s", repeats,
+          repeats == 1 ? "" : "s");
     if (options.only_check) {
         for (const Contender& contender : list)
-            fmt::print("{:<14} {} {} segments\n", contender.name, contender.hash, contender.last.segments());
+            print("{:<14} {} {} segments\n", contender.name, contender.hash, contender.last.segments());
     } else if (is_same) {
         print_table(list);
     } else {  // a figure of a wrong image is not worth printing
-        for (const Contender& contender : list) fmt::print("{:<14} {}\n", contender.name, contender.hash);
+        for (const Contender& contender : list) print("{:<14} {}\n", contender.name, contender.hash);
     }
-    fmt::print("{}\n", is_same ? "all images are the same" : "THE IMAGES DIFFER");
+    print("{}\n", is_same ? "all images are the same" : "THE IMAGES DIFFER");
     if (!options.json.empty() && is_same) {
         write_json(options.json, {{"scene", scene.name},
                                   {"width", scene.width},
@@ -246,12 +249,12 @@ void add_compare_command(CLI::App& app, int& status) {
     command->add_flag("--roulette", options->roulette, "As for render");
     command->add_option("--threads", options->threads, "OpenMP threads (default: OMP_NUM_THREADS)")
         ->check(CLI::Range(1, 4096));
-    command->add_option("--schedule", options->schedule, "As for render");
-    command->add_option("--grain", options->grain, "As for render");
+    command->add_option("--schedule", options->schedule, "As for render, of the engines that loop over the image");
+    command->add_option("--grain", options->grain, "As for render, of the engines that loop over the image");
     command->add_option("--repeats", options->repeats, "Interleaved runs of each engine (default: 5)")
         ->check(CLI::Range(1, 1000));
     command->add_flag("--check", options->only_check, "Compare images and segments only, do not time");
-    command->add_option("--json", options->json, "Write all figures to this file");
+    command->add_option("--json", options->json, "Write all figures to this file")->check(check_file_name);
     command->callback([options, &status] { status = compare(*options); });
 }
 

@@ -5,7 +5,9 @@
 #include <fmt/ranges.h>
 
 #include "cli/commands.h"
+#include "cli/print.h"
 #include "core/compiled_scene.h"
+#include "core/environment.h"
 #include "core/scene_reader.h"
 
 namespace raypool::cli {
@@ -24,9 +26,9 @@ template <class Tree>
 void print_tree(const char* what, const Tree& tree) {
     if (tree.nodes.empty()) return;
     const std::size_t lanes = tree.blocks.size() * kTreeWidth<float>;
-    fmt::print("{} tree: {} nodes {} wide, {} levels, {} leaves holding {} ({:.0f} % full)\n", what, tree.nodes.size(),
-               kTreeWidth<float>, tree.depth, tree.blocks.size(), filled_lanes(tree.blocks),
-               100.0 * static_cast<double>(filled_lanes(tree.blocks)) / static_cast<double>(lanes));
+    print("{} tree: {} nodes {} wide, {} levels, {} leaves holding {} ({:.0f} % full)\n", what, tree.nodes.size(),
+          kTreeWidth<float>, tree.depth, tree.blocks.size(), filled_lanes(tree.blocks),
+          100.0 * static_cast<double>(filled_lanes(tree.blocks)) / static_cast<double>(lanes));
 }
 
 void info(const std::string& name) {
@@ -36,19 +38,23 @@ void info(const std::string& name) {
         const auto names = feature_names(needs);
         return names.empty() ? std::string("nothing") : fmt::format("{}", fmt::join(names, ", "));
     };
-    fmt::print("{}: {}\n", scene.name, scene.description);
-    fmt::print("image: {} x {}\n", scene.width, scene.height);
-    fmt::print("shapes: {} spheres, {} quads, {} planes; {} materials, {} textures\n", scene.spheres.size(),
-               scene.quads.size(), scene.planes.size(), scene.materials.size(), scene.textures.size());
-    fmt::print("needs: {}\n", listed(compiled.needs));
-    fmt::print("runs on code compiled for: {}\n", listed(kCompiledNeeds[compiled_needs_index(compiled.needs)]));
-    fmt::print("ray record: {} bytes in float, {} in double\n", ray_record_bytes(compiled.needs, sizeof(float)),
-               ray_record_bytes(compiled.needs, sizeof(double)));
-    fmt::print("tested before the trees: {} spheres, {} planes\n", filled_lanes(compiled.large_spheres),
-               filled_lanes(compiled.planes));
+    print("{}: {}\n", scene.name, scene.description);
+    print("image: {} x {}\n", scene.width, scene.height);
+    print("shapes: {} spheres, {} quads, {} planes; {} materials, {} textures\n", scene.spheres.size(),
+          scene.quads.size(), scene.planes.size(), scene.materials.size(), scene.textures.size());
+    print("needs: {}\n", listed(compiled.needs));
+    print("runs on code compiled for: {}\n", listed(kCompiledNeeds[compiled_needs_index(compiled.needs)]));
+    const CodeWidths widths = code_widths();
+    print("which may use: {}; stages of {} rays in float, {} in double; trees {} and {} wide\n",
+          fmt::format("{}", fmt::join(widths.instruction_sets, ", ")), widths.float_lanes, widths.double_lanes,
+          widths.float_tree_width, widths.double_tree_width);
+    print("ray record: {} bytes in float, {} in double\n", ray_record_bytes(compiled.needs, sizeof(float)),
+          ray_record_bytes(compiled.needs, sizeof(double)));
+    print("tested before the trees: {} spheres, {} planes\n", filled_lanes(compiled.large_spheres),
+          filled_lanes(compiled.planes));
     print_tree("sphere", compiled.sphere_tree);
     print_tree("quad", compiled.quad_tree);
-    fmt::print("tables: {:.1f} KB\n", static_cast<double>(compiled.bytes()) / 1024);
+    print("tables: {:.1f} KB\n", static_cast<double>(compiled.bytes()) / 1024);
 }
 
 }  // namespace

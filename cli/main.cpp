@@ -11,19 +11,17 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
+#include "cli/option_rules.h"
+#include "cli/print.h"
 #include "cluster/ranks.h"
 #include "core/error.h"
+#include "core/memory.h"
+#include "core/text.h"
 
 namespace {
 
-std::string one_line(std::string text) {
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < ' ' || c == 0x7F) c = ' ';  // one line, and nothing for a terminal to obey
-    return text;
-}
-
 int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
-    const auto fail = [&](int status, const std::string& text) { return ranks.fail(status, one_line(text)); };
+    const auto fail = [&](int status, const std::string& text) { return ranks.fail(status, raypool::printable(text)); };
     try {
         if (ranks.count() > 1 && (argc < 2 || std::strcmp(argv[1], "render") != 0))
             return fail(2, "several ranks can only run the command render");
@@ -38,6 +36,9 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
         raypool::cli::add_advise_command(app, status);
         raypool::cli::add_merge_command(app, status);
         raypool::cli::add_study_command(app, status);
+        app.parse_complete_callback([&app] {  // before what a command does
+            for (const CLI::App* command : app.get_subcommands()) raypool::cli::check_option_rules(*command);
+        });
         try {
             app.parse(argc, argv);
             if (app.get_subcommands().empty()) return fail(2, "a command is required (see --help)");
@@ -50,7 +51,8 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
     } catch (const raypool::InputError& error) {
         return fail(2, error.what());
     } catch (const std::bad_alloc&) {
-        return fail(1, "out of memory");
+        return fail(2,
+                    fmt::format("out of memory: {} are available", raypool::bytes_text(raypool::available_memory())));
     } catch (const std::exception& error) {
         return fail(1, error.what());
     }
@@ -65,7 +67,7 @@ int main(int argc, char** argv) {
     try {
         return run(argc, argv, *raypool::cluster::join_ranks());
     } catch (const raypool::InputError& error) {
-        fmt::print(stderr, "raypool: {}\n", error.what());
+        raypool::cli::print(stderr, "raypool: {}\n", error.what());
         return 2;
     }
 }

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -8,7 +10,9 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/print.h"
 #include "core/error.h"
+#include "core/file_lock.h"
 #include "core/image_file.h"
 #include "core/output_file.h"
 #include "core/sums_file.h"
@@ -44,6 +48,7 @@ RenderSums read_part(const std::string& file) {
 /// Adds a part to the sum of those before it.
 void add(RenderSums& sum, const RenderSums& part) {
     check_same_render(part, sum);
+    sum.spp = std::max(sum.spp, part.spp);
     for (const SampleRange& range : part.ranges) sum.ranges = with_range(std::move(sum.ranges), range);
     const std::span<std::int64_t> sums = sum.framebuffer.sums();
     for (std::size_t i = 0; i < sums.size(); ++i)
@@ -53,14 +58,16 @@ void add(RenderSums& sum, const RenderSums& part) {
 
 int merge(const MergeOptions& options) {
     if (!options.output.empty()) image_format(options.output);
-    check_distinct({{"--output", options.output}, {"--checkpoint", options.checkpoint}});
+    NamedFiles parts;
+    for (const std::string& part : options.parts) parts.emplace_back("a part", part);
+    check_distinct({{"--output", options.output}, {"--checkpoint", options.checkpoint}}, parts);
     for (const std::string& file : {options.output, options.checkpoint})
         if (!file.empty()) check_writable(file);
+    std::optional<FileLock> lock;
+    if (!options.checkpoint.empty()) lock.emplace(options.checkpoint);
     if (std::filesystem::is_regular_file(options.checkpoint))
         throw InputError(fmt::format("{}: is there already; remove it, or name another file", options.checkpoint));
     RenderSums sum = read_part(options.parts.front());
-    std::int64_t spp = 0;
-    with_name(options.parts.front(), [&] { spp = whole_number(sum.key, "spp", 1, kMostSpp); });
     for (std::size_t i = 1; i < options.parts.size(); ++i) {
         const RenderSums part = read_part(options.parts[i]);
         with_name(options.parts[i], [&] { add(sum, part); });
@@ -69,15 +76,16 @@ int merge(const MergeOptions& options) {
     if (!options.output.empty()) {
         ImageAttributes attributes{{"raypool.hash", sum.framebuffer.hash()}};
         for (const auto& [name, value] : sum.key) attributes["raypool." + name] = value;
+        attributes["raypool.spp"] = fmt::to_string(sum.spp);
         write_image(options.output, sum.framebuffer.image(sum.sample_count()), attributes);
     }
     if (!options.checkpoint.empty()) write_sums(options.checkpoint, sum);
-    const std::vector<SampleRange> missing = gaps(sum.ranges, spp);
+    const std::vector<SampleRange> missing = gaps(sum.ranges, sum.spp);
     for (const SampleRange& gap : missing)
-        fmt::print(stderr, "raypool: samples {} to {} are missing (--samples {}:{})\n", gap.first, gap.end, gap.first,
-                   gap.end);
+        print(stderr, "raypool: samples {} to {} are missing (--samples {}:{})\n", gap.first, gap.end, gap.first,
+              gap.end);
     if (!options.is_quiet)
-        fmt::print("{} of {} samples a pixel\nhash {}\n", sum.sample_count(), spp, sum.framebuffer.hash());
+        print("{} of {} samples a pixel\nhash {}\n", sum.sample_count(), sum.spp, sum.framebuffer.hash());
     return missing.empty() ? 0 : 1;
 }
 

@@ -1,6 +1,7 @@
 #include "cli/options.h"
 
 #include <omp.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <charconv>
@@ -11,6 +12,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/output_file.h"
+#include "core/thread_limit.h"
 
 namespace raypool::cli {
 
@@ -33,23 +36,34 @@ std::uint64_t parse_seed(std::string_view text) {
 }
 
 int thread_count(int asked) {
-    constexpr int kMostThreads = 4096;
-    const int limit = std::min(omp_get_thread_limit(), kMostThreads);
     const int count = asked == 0 ? omp_get_max_threads() : asked;
-    if (count > limit)
-        throw InputError(fmt::format("{}: must be at most {}{}, got {}", asked == 0 ? "OMP_NUM_THREADS" : "--threads",
-                                     limit, limit < kMostThreads ? " (OMP_THREAD_LIMIT)" : "", count));
+    check_thread_count(count, asked == 0 ? "OMP_NUM_THREADS" : "--threads");
     return count;
 }
 
-void check_distinct(const std::vector<std::pair<std::string, std::string>>& files_by_option) {
-    std::map<std::filesystem::path, std::string> option_of;
-    for (const auto& [option, file] : files_by_option) {
-        if (file.empty()) continue;
-        std::error_code error;
-        const std::filesystem::path path = weakly_canonical(std::filesystem::absolute(file, error), error);
-        if (error || (exists(path, error) && !is_regular_file(path, error))) continue;  // a device, or refused elsewhere
-        const auto [other, is_new] = option_of.emplace(path, option);
+namespace {
+
+/// What is the same for all names of a file that is there or could be; empty for a device, and for what is refused
+/// elsewhere.
+std::string identity(const std::string& name) {
+    struct stat status {};
+    if (::stat(name.c_str(), &status) == 0)
+        return S_ISREG(status.st_mode) ? fmt::format("{} {}", status.st_dev, status.st_ino) : "";
+    std::error_code error;
+    const std::filesystem::path path = weakly_canonical(absolute(final_file(name), error), error);
+    return error ? "" : path.string();
+}
+
+}  // namespace
+
+void check_distinct(const NamedFiles& outputs, const NamedFiles& inputs) {
+    std::map<std::string, std::string> option_of;
+    for (const auto& [option, file] : inputs)
+        if (std::error_code error; std::filesystem::exists(file, error)) option_of.emplace(identity(file), option);
+    for (const auto& [option, file] : outputs) {
+        const std::string id = file.empty() ? "" : identity(file);
+        if (id.empty()) continue;
+        const auto [other, is_new] = option_of.emplace(id, option);
         if (!is_new) throw InputError(fmt::format("{}: {} is also the file of {}", option, file, other->second));
     }
 }

@@ -26,11 +26,15 @@ SampleRange parse_samples(std::string_view text, std::int64_t spp);
 /// A whole number below 2^64.
 std::uint64_t parse_seed(std::string_view text);
 
-/// Threads as asked for with --threads, or OMP_NUM_THREADS where `asked` is 0. Refuses more than OpenMP would start.
+/// Threads as asked for with --threads, or OMP_NUM_THREADS where `asked` is 0. Refuses more than OpenMP and the system
+/// would give (core/thread_limit.h).
 int thread_count(int asked);
 
-/// Refuses two options that name one file, which the later of them to be written would be. Empty names are none.
-void check_distinct(const std::vector<std::pair<std::string, std::string>>& files_by_option);
+using NamedFiles = std::vector<std::pair<std::string, std::string>>;
+
+/// Refuses two outputs that are one file, by whatever names and links, and an output that would write over an input.
+/// Both are pairs of an option and its file; empty names are none.
+void check_distinct(const NamedFiles& outputs, const NamedFiles& inputs = {});
 
 /// Refuses what is no number within [least, most]; NaN is none. For CLI::Option::check().
 std::function<std::string(const std::string&)> check_within(double least, double most);

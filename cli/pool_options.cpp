@@ -90,20 +90,26 @@ PoolSettings pool_settings(const PoolOptions& options, std::size_t record_bytes)
     set(settings.accumulator, options.accumulator);
     if (!options.rays.empty()) settings.capacity = parse_pool_rays(options.rays, record_bytes);
     if (options.batch != 0) settings.batch = options.batch;
+    settings.batch = std::min(settings.batch, settings.capacity);
+    if (settings.width == StageWidth::Scalar) settings.intersection = Intersection::Single;  // a stream needs registers
     return settings;
 }
 
 nlohmann::json to_json(const PoolSettings& settings) {
-    return {{"scope", to_string(settings.scope)},
-            {"refill", to_string(settings.refill)},
-            {"stage_width", to_string(settings.width)},
-            {"intersect", to_string(settings.intersection)},
-            {"camera", to_string(settings.camera)},
-            {"sort", to_string(settings.sort)},
-            {"append", to_string(settings.append)},
-            {"accumulator", to_string(settings.accumulator)},
-            {"rays", settings.capacity},
-            {"batch", settings.batch}};
+    nlohmann::json result{{"scope", to_string(settings.scope)},
+                          {"refill", to_string(settings.refill)},
+                          {"stage_width", to_string(settings.width)},
+                          {"intersect", to_string(settings.intersection)},
+                          {"camera", to_string(settings.camera)},
+                          {"sort", to_string(settings.sort)},
+                          {"accumulator", to_string(settings.accumulator)},
+                          {"rays", settings.capacity}};
+    if (settings.scope == PoolScope::Shared) {
+        result["append"] = to_string(settings.append);
+        result["batch"] = settings.batch;
+        result["batch_schedule"] = to_string(settings.batch_schedule);
+    }
+    return result;
 }
 
 }  // namespace raypool::cli

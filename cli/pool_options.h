@@ -35,6 +35,7 @@ std::int64_t parse_pool_rays(std::string_view text, std::size_t record_bytes);
 /// per-thread ones.
 wavefront::PoolSettings pool_settings(const PoolOptions& options, std::size_t record_bytes);
 
+/// What has an effect.
 nlohmann::json to_json(const wavefront::PoolSettings& settings);
 
 }  // namespace raypool::cli

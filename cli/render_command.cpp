@@ -1,7 +1,9 @@
 #include <unistd.h>
 
+#include <exception>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/pool_options.h"
+#include "cli/print.h"
 #include "cli/render_image.h"
 #include "cli/render_summary.h"
 #include "cli/stats_json.h"
@@ -19,9 +22,12 @@
 #include "core/error.h"
 #include "core/heat_map.h"
 #include "core/image_file.h"
+#include "core/json_file.h"
+#include "core/memory.h"
 #include "core/output_file.h"
 #include "core/scene_reader.h"
 #include "core/trace.h"
+#include "wavefront/setting_names.h"
 
 namespace raypool::cli {
 
@@ -42,10 +48,10 @@ struct RenderOptions {
     std::string seed = "0";
     std::string sampler = "independent";
     bool roulette = false;
-    std::string samples;
+    std::optional<std::string> samples;
     double target_error = 0;
     int threads = 0;  ///< 0: OpenMP's
-    std::string schedule;
+    std::optional<std::string> schedule;
     std::string grain = "line";
     std::string precision = "float";
     bool count_work = false;
@@ -62,8 +68,8 @@ Cost cost_of(const std::string& word) {
 RenderSettings render_settings(const RenderOptions& options) {
     RenderSettings settings;
     settings.end_sample = options.spp;
-    if (!options.samples.empty()) {
-        const SampleRange range = parse_samples(options.samples, options.spp);
+    if (options.samples) {
+        const SampleRange range = parse_samples(*options.samples, options.spp);
         settings.first_sample = range.first;
         settings.end_sample = range.end;
     }
@@ -73,25 +79,25 @@ RenderSettings render_settings(const RenderOptions& options) {
     settings.sampler = parse_sampler(options.sampler);
     settings.roulette = options.roulette;
     settings.threads = thread_count(options.threads);
-    settings.schedule = options.schedule.empty() ? default_schedule() : parse_schedule(options.schedule);
+    if (options.engine != "wavefront" || options.pool.scope != to_string(wavefront::PoolScope::Shared))
+        settings.schedule = options.schedule ? parse_schedule(*options.schedule) : default_schedule();
     settings.grain = parse_grain(options.grain);
     settings.count_work = options.count_work || (!options.cost_image.empty() && cost_of(options.cost) == Cost::Tests);
     settings.log_rounds = options.count_work;
     return settings;
 }
 
-/// Sums, the image made of them and, where asked for, second moments with their estimates and the checkpoint's bytes
-/// must fit into the machine, before anything is touched. Each rank on it has its own.
+/// Sums, the image made of them and, where asked for, costs with their image, second moments with their estimates and
+/// the checkpoint's bytes must fit into the memory that is available, before anything is touched. Each rank on this
+/// machine has its own.
 void check_memory(const Scene& scene, const RenderOptions& options, const cluster::Ranks& ranks) {
-    double pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
+    std::size_t pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
+    if (!options.cost_image.empty()) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(float);
     if (options.target_error > 0) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
     if (!options.checkpoint.file.empty()) pixel_bytes += 4 * sizeof(std::int64_t) + sizeof(std::int32_t);
-    const double bytes = static_cast<double>(scene.width * scene.height) * pixel_bytes * ranks.on_this_machine();
-    const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-    if (bytes > machine)
-        throw InputError(
-            fmt::format("--width: an image of {} x {} pixels needs {:.1f} GB of memory, this machine has {:.1f}",
-                        scene.width, scene.height, bytes * 1e-9, machine * 1e-9));
+    check_available(static_cast<std::size_t>(scene.width * scene.height) * pixel_bytes *
+                        static_cast<std::size_t>(ranks.on_this_machine()),
+                    fmt::format("--width: the sums and images of {} x {} pixels", scene.width, scene.height));
 }
 
 /// Of the code that a scene runs on, which may be compiled for more than it needs.
@@ -105,7 +111,8 @@ ImageAttributes image_attributes(const RenderRecord& record) {
                                {"raypool.samples_done", fmt::to_string(record.samples_done)}};
     const nlohmann::json settings = settings_json(record);
     for (const auto& [key, value] : settings.items())
-        attributes["raypool." + key] = value.is_string() ? value.get<std::string>() : value.dump();
+        attributes["raypool." + key] =
+            value.is_string() ? value.get<std::string>() : json_text(value, JsonLayout::OneLine);
     return attributes;
 }
 
@@ -117,15 +124,22 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
     write_image(options.cost_image, is_picture ? heat_map(cost) : cost.image(), attributes);
 }
 
-/// What only one rank can do is for rank 0; what is not gathered from ranks is refused.
-void make_ready(RenderOptions& options, const cluster::Ranks& ranks) {
+/// What only one rank can do is for rank 0; what is not gathered from ranks is refused. Returns the checkpoint's lock.
+[[nodiscard]] std::unique_ptr<FileLock> make_ready(RenderOptions& options, const cluster::Ranks& ranks) {
+    if (ranks.separate_count() > 1 && options.samples.empty())
+        throw InputError(fmt::format(
+            "{} tasks were started that know nothing of each other, and each would render the whole image: use mpirun "
+            "or "
+            "srun --mpi=pmix, or give each its --samples, or unset SLURM_STEP_NUM_TASKS where each renders its own",
+            ranks.separate_count()));
     if (ranks.count() > 1)
         for (const auto& [flag, file] : {std::pair{"--trace", options.trace}, {"--cost-image", options.cost_image}})
             if (!file.empty()) throw InputError(fmt::format("{}: is not made by several ranks", flag));
-    if (ranks.is_first()) return check(options.checkpoint);
+    if (ranks.is_first()) return claim(options.checkpoint);
     options.output.clear();
     options.stats.clear();
     options.is_quiet = true;
+    return nullptr;
 }
 
 int render(RenderOptions& options, cluster::Ranks& ranks) {
@@ -134,8 +148,9 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
                     {"--checkpoint", options.checkpoint.file},
                     {"--stats", options.stats},
                     {"--trace", options.trace},
-                    {"--cost-image", options.cost_image}});
-    make_ready(options, ranks);
+                    {"--cost-image", options.cost_image}},
+                   {{"the scene", options.scene}});
+    const std::unique_ptr<FileLock> lock = make_ready(options, ranks);
     RenderRecord record;
     record.settings = render_settings(options);
     record.spp = options.spp;
@@ -144,8 +159,6 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     record.target_error = options.target_error;
     if (options.target_error > 0 && options.spp < 2)
         throw InputError("--spp: must be at least 2 with --target-error: one sample does not tell its error");
-    if (options.target_error > 0 && !options.samples.empty())
-        throw InputError("--samples: which samples a pixel gets is for --target-error to decide");
     if (!options.output.empty()) {
         image_format(options.output);
         check_writable(options.output);
@@ -178,23 +191,34 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     Checkpoint checkpoint(options.checkpoint, ranks);
     const Image image = render_image(scene, options.checkpoint, options.is_quiet, checkpoint, ranks, record);
     watch.lap();
-    if (!options.output.empty()) write_image(options.output, image, image_attributes(record));
+    std::exception_ptr failure = checkpoint.failure();  // what cannot be written costs nothing else
+    const auto attempt = [&failure](const std::string& file, const auto& write) {
+        try {
+            if (!file.empty()) write(file);
+        } catch (...) {
+            if (!failure) failure = std::current_exception();
+        }
+    };
+    attempt(options.output, [&](const auto& file) { write_image(file, image, image_attributes(record)); });
     record.write_s = watch.seconds();
     record.total_s = total.seconds();
-    if (!options.stats.empty()) write_json(options.stats, stats_json(record));
-    if (!options.cost_image.empty()) write_cost_image(options, cost, record);
-    if (!options.trace.empty()) write_trace(options.trace, trace, image_attributes(record));
+    attempt(options.stats, [&](const auto& file) { write_json(file, stats_json(record)); });
+    attempt(options.cost_image, [&](const auto&) { write_cost_image(options, cost, record); });
+    attempt(options.trace, [&](const auto& file) { write_trace(file, trace, image_attributes(record)); });
+    if (failure) std::rethrow_exception(failure);
 
     const int signal = checkpoint.stopped_by();
-    if (signal != 0 && ranks.is_first())
-        fmt::print(stderr,
-                   "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
-                   options.checkpoint.file, record.samples_done);
-    const int status = signal == 0 ? 0 : 128 + signal;
+    if (signal != 0 && ranks.is_first() && !Checkpoint::has_said_so())
+        print(stderr,
+              "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
+              options.checkpoint.file, record.samples_done);
+    const bool is_missed = signal == 0 && misses_target(record);
+    if (is_missed && ranks.is_first()) print_miss(record);
+    const int status = signal != 0 ? 128 + signal : is_missed ? 1 : 0;
     if (options.is_quiet) return status;
     print_summary(record);
-    if (!options.output.empty()) fmt::print("{}\n", options.output);
-    if (!options.cost_image.empty()) fmt::print("{}\n", options.cost_image);
+    if (!options.output.empty()) print("{}\n", options.output);
+    if (!options.cost_image.empty()) print("{}\n", options.cost_image);
     if (!options.trace.empty()) print_trace(options.trace, trace);
     return status;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -30,13 +31,12 @@ std::unique_ptr<Engine> make_engine(const RenderRecord& record, cluster::Ranks& 
     return ranks.count() == 1 ? std::move(own) : std::make_unique<cluster::RankEngine>(std::move(own), ranks);
 }
 
-/// All that fixes the image. Threads, engine and pool do not.
+/// All that fixes the samples. Threads, engine and pool do not, nor does how many there are.
 ImageKey image_key(const Scene& scene, const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
     return {{"scene", scene_hash(scene)},
             {"width", fmt::to_string(scene.width)},
             {"height", fmt::to_string(scene.height)},
-            {"spp", fmt::to_string(record.spp)},
             {"depth", fmt::to_string(settings.depth)},
             {"split_depth", fmt::to_string(settings.split_depth)},
             {"seed", fmt::to_string(settings.seed)},
@@ -53,35 +53,41 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
     if (record.target_error > 0) {
         std::vector<std::int32_t> counts = sums.sample_counts;
         if (counts.empty()) counts.resize(static_cast<std::size_t>(scene.pixel_count()));
-        AdaptivePlan plan(record.target_error, record.settings.end_sample, std::move(counts), sums.rounds);
+        AdaptivePlan plan({record.target_error, scene.max_radiance, record.settings.end_sample}, std::move(counts),
+                          sums.rounds);
         const auto keep = [&] {
             sums.sample_counts = plan.sample_counts();
             sums.rounds = plan.rounds();
-            return checkpoint.keep(sums);
+            return checkpoint.keep(sums, [] {});  // a round ends merged
         };
         RenderReport report = render_adaptively(engine, scene, record.settings, plan, sums.framebuffer, keep);
-        adaptive = {plan.sample_counts(), plan.rmse(), plan.rounds()};
+        adaptive = plan.report();
         return report;
     }
-    RenderReport report;
-    report.threads.resize(static_cast<std::size_t>(record.settings.threads));
+    std::unique_ptr<RenderSession> session;
     for (const SampleRange& gap : gaps(sums.ranges, record.settings.end_sample)) {
         RenderSettings settings = record.settings;
         settings.first_sample = std::max(gap.first, settings.first_sample);
         settings.end_sample = gap.end;
         if (settings.first_sample >= settings.end_sample) continue;
+        if (session == nullptr) session = engine.begin(scene, settings, sums.framebuffer);
         if (!checkpoint.is_kept()) {
-            report.add(engine.render(scene, settings, sums.framebuffer));
+            session->add({settings.first_sample, settings.end_sample, nullptr});
             sums.ranges = with_range(std::move(sums.ranges), {settings.first_sample, settings.end_sample});
             continue;
         }
-        report.add(render_in_pieces(engine, scene, settings, sums.framebuffer, [&](const SampleRange& range) {
+        render_in_pieces(*session, settings, [&](const SampleRange& range) {
             sums.ranges = with_range(std::move(sums.ranges), range);
-            return checkpoint.keep(sums);
-        }));
+            return checkpoint.keep(sums, [&] { session->merge(); });
+        });
         if (checkpoint.stopped_by() != 0) break;
     }
-    return report;
+    if (session == nullptr) {
+        RenderReport nothing;
+        nothing.threads.resize(static_cast<std::size_t>(record.settings.threads));
+        return nothing;
+    }
+    return session->finish();
 }
 
 template <class Scalar>
@@ -95,6 +101,7 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
 
     const bool is_adaptive = record.target_error > 0;
     RenderSums sums{image_key(scene, record),
+                    record.spp,
                     {},
                     {},
                     0,
@@ -107,9 +114,14 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
     }
     Progress progress;
     record.settings.progress = &progress;
-    progress.paths = compiled.pixel_count() * sums.sample_count();
+    progress.paths = is_adaptive
+                         ? std::accumulate(sums.sample_counts.begin(), sums.sample_counts.end(), std::int64_t{0})
+                         : compiled.pixel_count() * sums.sample_count();
+    progress.before = progress.paths.load();
     {
-        const ProgressBar bar(progress, path_count(compiled, record.settings), {"M paths/s", 1e-6}, is_quiet);
+        // How many samples an adaptive render will take is not known.
+        const std::int64_t total = is_adaptive ? 0 : path_count(compiled, record.settings);
+        const ProgressBar bar(progress, total, {"M paths/s", 1e-6}, is_quiet);
         const std::unique_ptr<Engine> engine = make_engine(record, ranks);
         record.report = render_missing(*engine, compiled, record, sums, record.adaptive, checkpoint);
     }
@@ -117,7 +129,7 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
         record.ranks = cluster::gather(ranks, record.report);
         record.report = cluster::joined(record.ranks);
     }
-    checkpoint.write(sums);
+    checkpoint.finish(sums);
     record.settings.progress = nullptr;
     record.hash = sums.framebuffer.hash();
     record.samples_done = is_adaptive ? std::llround(record.adaptive.mean_samples()) : sums.sample_count();

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/print.h"
 #include "core/trace.h"
 
 namespace raypool::cli {
@@ -15,16 +16,28 @@ void print_work(const RenderSettings& settings, const RenderReport& report) {
     const auto paths = static_cast<double>(report.paths());
     const auto segments = static_cast<double>(report.segments());
     if (paths == 0) {
-        fmt::print("no sample was missing\n");
+        print("no sample was missing\n");
         return;
     }
-    fmt::print("{:.3f} M paths, {:.3f} M segments ({:.3f} a path) in {:.3f} s: {:.3f} M paths/s, {:.1f} ns a segment\n",
-               paths * 1e-6, segments * 1e-6, segments / paths, report.seconds, paths / report.seconds * 1e-6,
-               segments == 0 ? 0 : report.seconds * 1e9 * static_cast<double>(report.threads.size()) / segments);
+    print("{:.3f} M paths, {:.3f} M segments ({:.3f} a path) in {:.3f} s: {:.3f} M paths/s, {:.1f} ns a segment\n",
+          paths * 1e-6, segments * 1e-6, segments / paths, report.seconds, paths / report.seconds * 1e-6,
+          segments == 0 ? 0 : report.seconds * 1e9 * static_cast<double>(report.threads.size()) / segments);
     if (settings.count_work)
-        fmt::print("{:.2f} box tests and {:.2f} primitive tests a segment\n",
-                   static_cast<double>(report.total(&ThreadWork::box_tests)) / segments,
-                   static_cast<double>(report.total(&ThreadWork::primitive_tests)) / segments);
+        print("{:.2f} box tests and {:.2f} primitive tests a segment\n",
+              static_cast<double>(report.total(&ThreadWork::box_tests)) / segments,
+              static_cast<double>(report.total(&ThreadWork::primitive_tests)) / segments);
+}
+
+/// What is known of the error of an adaptive render. An estimate is not printed where there is none.
+void print_error(const RenderRecord& record) {
+    const AdaptiveReport& adaptive = record.adaptive;
+    const auto [least, most] = std::minmax_element(adaptive.sample_counts.begin(), adaptive.sample_counts.end());
+    const bool has_estimate = adaptive.rmse > 0;
+    print("RMSE {}at most {:.4g} (asked for {:.4g}: {}) after {} rounds; {} to {} samples a pixel, {:.1f} on average\n",
+          has_estimate ? fmt::format("estimated {:.4g}, ", adaptive.rmse) : "", adaptive.most_rmse, record.target_error,
+          to_string(adaptive.status), adaptive.rounds, *least, *most, adaptive.mean_samples());
+    print("{} pixels without variance; light that no sample has found adds at most {:.3g}\n", adaptive.flat_pixels,
+          adaptive.unseen_rmse);
 }
 
 }  // namespace
@@ -32,39 +45,50 @@ void print_work(const RenderSettings& settings, const RenderReport& report) {
 void print_summary(const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
     const RenderReport& report = record.report;
-    fmt::print("{}: {} x {}, samples {} to {} of {}, depth {}{}, {}seed {}, {}\n", record.scene_name, record.width,
-               record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth,
-               settings.roulette ? " and roulette" : "", settings.sampler == Sampler::Sobol ? "sobol, " : "",
-               settings.seed, record.precision == Precision::Float ? "float" : "double");
+    print("{}: {} x {}, samples {} to {} of {}, depth {}{}, {}seed {}, {}\n", record.scene_name, record.width,
+          record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth,
+          settings.roulette ? " and roulette" : "", settings.sampler == Sampler::Sobol ? "sobol, " : "", settings.seed,
+          record.precision == Precision::Float ? "float" : "double");
     const std::string ranks = record.ranks.empty() ? "" : fmt::format("{} ranks of ", record.ranks.size());
-    fmt::print("{} engine: {}{} thread{}, grain {}, schedule {}\n", record.engine, ranks, settings.threads,
-               settings.threads == 1 ? "" : "s", to_string(settings.grain), to_string(settings.schedule));
+    print("{} engine: {}{} thread{}, {}\n", record.engine, ranks, settings.threads, settings.threads == 1 ? "" : "s",
+          loops_over_image(record)
+              ? fmt::format("grain {}, schedule {}", to_string(settings.grain), to_string(settings.schedule))
+              : "one pool for all");
     print_work(settings, report);
-    if (record.target_error > 0) {
-        const auto [least, most] =
-            std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
-        fmt::print(
-            "estimated RMSE {:.4g} (asked for {:.4g}) after {} rounds; {} to {} samples a pixel, {:.1f} on average\n",
-            record.adaptive.rmse, record.target_error, record.adaptive.rounds, *least, *most,
-            record.adaptive.mean_samples());
-    }
+    if (record.target_error > 0) print_error(record);
     if (report.pool_bytes > 0)
-        fmt::print("ray record of {} bytes; pools at most {:.2f} MB\n", report.record_bytes,
-                   static_cast<double>(report.pool_bytes) / (1024 * 1024));
+        print("ray record of {} bytes; pools at most {:.2f} MB\n", report.record_bytes,
+              static_cast<double>(report.pool_bytes) / (1024 * 1024));
     if (record.truncation_bound > 0)
-        fmt::print("depth {} cuts off a radiance of at most {:.3g} a pixel\n", settings.depth, record.truncation_bound);
+        print("depth {} cuts off a radiance of at most {:.3g} a pixel\n", settings.depth, record.truncation_bound);
     if (report.audit.non_finite > 0 || report.audit.clamped > 0)
-        fmt::print("bad samples: {} not finite and left out, {} channels cut (radiance {:.6g} in all)\n",
-                   report.audit.non_finite, report.audit.clamped, report.audit.clamped_energy);
-    fmt::print("hash {}\n", record.hash);
+        print("bad samples: {} not finite and left out, {} channels cut (radiance {:.6g} in all)\n",
+              report.audit.non_finite, report.audit.clamped, report.audit.clamped_energy);
+    print("hash {}\n", record.hash);
+}
+
+void print_miss(const RenderRecord& record) {
+    const AdaptiveReport& adaptive = record.adaptive;
+    if (adaptive.status == TargetStatus::Unknown) {
+        print(
+            stderr,
+            "raypool: --target-error {:g} is not known to be reached: light that no sample has found may add {:.3g}\n",
+            record.target_error, adaptive.unseen_rmse);
+        return;
+    }
+    print(
+        stderr,
+        "raypool: --target-error {:g} is not reached: the estimated RMSE is {:.4g} with the most samples that --spp {} "
+        "allows\n",
+        record.target_error, adaptive.rmse, record.spp);
 }
 
 void print_trace(const std::string& file, const Trace& trace) {
-    fmt::print("{}: {} events", file, trace.event_count());
+    print("{}: {} events", file, trace.event_count());
     if (trace.dropped_count() > 0)
-        fmt::print(", and {} that are left out: the trace ends early, with {} events of a thread",
-                   trace.dropped_count(), Trace::kMostEvents);
-    fmt::print("\n");
+        print(", and {} that are left out: the trace ends early, with {} events of a thread", trace.dropped_count(),
+              Trace::kMostEvents);
+    print("\n");
 }
 
 }  // namespace raypool::cli

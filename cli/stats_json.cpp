@@ -6,11 +6,18 @@
 
 #include "cli/pool_options.h"
 #include "core/environment.h"
-#include "core/output_file.h"
 
 namespace raypool::cli {
 
 using nlohmann::json;
+
+bool loops_over_image(const RenderRecord& record) {
+    return record.engine != "wavefront" || wavefront::loops_over_image(record.pool);
+}
+
+bool misses_target(const RenderRecord& record) {
+    return record.target_error > 0 && record.adaptive.status != TargetStatus::Reached;
+}
 
 json settings_json(const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
@@ -27,9 +34,11 @@ json settings_json(const RenderRecord& record) {
                 {"precision", record.precision == Precision::Float ? "float" : "double"},
                 {"engine", record.engine},
                 {"threads", settings.threads},
-                {"schedule", to_string(settings.schedule)},
-                {"grain", to_string(settings.grain)},
                 {"count_work", settings.count_work}};
+    if (loops_over_image(record)) {
+        result["schedule"] = to_string(settings.schedule);
+        result["grain"] = to_string(settings.grain);
+    }
     if (record.target_error > 0) result["target_error"] = record.target_error;
     if (record.engine == "wavefront") result["pool"] = to_json(record.pool);
     return result;
@@ -67,6 +76,7 @@ json stats_json(const RenderRecord& record) {
                 {{"read", record.read_s},
                  {"compile", record.compile_s},
                  {"render", report.seconds},
+                 {"setup", report.setup_s},  // of render
                  {"write", record.write_s},
                  {"total", record.total_s}}},
                {"paths", report.paths()},
@@ -87,7 +97,12 @@ json stats_json(const RenderRecord& record) {
         const auto [least, most] =
             std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());
         stats["adaptive"] = {
+            {"target", to_string(record.adaptive.status)},
             {"rmse_estimate", record.adaptive.rmse},
+            {"reached", !misses_target(record)},
+            {"rmse_most", record.adaptive.most_rmse},
+            {"rmse_of_unseen_light", record.adaptive.unseen_rmse},
+            {"pixels_without_variance", record.adaptive.flat_pixels},
             {"rounds", record.adaptive.rounds},
             {"samples_per_pixel", {{"least", *least}, {"mean", record.adaptive.mean_samples()}, {"most", *most}}}};
     }
@@ -105,11 +120,6 @@ json stats_json(const RenderRecord& record) {
         stats["rounds"] = rounds;
     }
     return stats;
-}
-
-void write_json(const std::filesystem::path& path, const json& json) {
-    const std::string text = json.dump(2) + "\n";
-    write_whole(path, std::as_bytes(std::span(text)));
 }
 
 }  // namespace raypool::cli

@@ -1,7 +1,6 @@
 /// The JSON that `--stats` writes, and what the render command knows to put into it.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -37,10 +36,14 @@ struct RenderRecord {
     double total_s = 0;
 };
 
+/// Whether the engine hands out parts of the image, so that schedule and grain have an effect.
+bool loops_over_image(const RenderRecord& record);
+
+/// Whether an adaptive render ended without the error that was asked for, which is not what its user wanted.
+bool misses_target(const RenderRecord& record);
+
+/// What has an effect.
 nlohmann::json settings_json(const RenderRecord& record);
 nlohmann::json stats_json(const RenderRecord& record);
-
-/// Writes the JSON whole or not at all.
-void write_json(const std::filesystem::path& path, const nlohmann::json& json);
 
 }  // namespace raypool::cli

@@ -1,5 +1,3 @@
-#include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -13,8 +11,11 @@
 #include "bench/studies/runner.h"
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/print.h"
 #include "cli/progress_bar.h"
+#include "cli/stop_signals.h"
 #include "core/error.h"
+#include "core/thread_limit.h"
 
 namespace raypool::cli {
 
@@ -33,36 +34,30 @@ struct StudyCommand {
     bool is_quiet = false;
 };
 
-std::atomic<bool> is_stopped = false;
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-/// Ctrl-C ends a study after the case under way; a second one at once.
-void stop(int signal) {
-    is_stopped = true;
-    std::signal(signal, SIG_DFL);
-}
-
 void list_studies() {
-    for (const auto& study : studies::all_studies()) fmt::print("{:<14} {}\n", study->name(), study->question());
-    fmt::print("{:<14} All of the paper's experiments, and a page that holds its figures against ours.\n", kReproduce);
+    for (const auto& study : studies::all_studies()) print("{:<14} {}\n", study->name(), study->question());
+    print("{:<14} All of the paper's experiments, and a page that holds its figures against ours.\n", kReproduce);
 }
 
 /// One study, in `folder`.
 int run(const studies::Study& study, const fs::path& folder, StudyCommand& command) {
     command.options.folder = folder;
+    const std::int64_t runs = studies::run_count(study, command.options);  // refuses options before a folder is made
+    const FileLock lock = studies::lock_folder(folder);
     Progress progress;
     bool is_complete = false;
     {
-        const ProgressBar bar(progress, studies::run_count(study, command.options), {"runs/s", 1}, command.is_quiet);
-        is_complete = studies::run_study(study, command.options, folder, {command.is_fresh, &is_stopped, &progress});
+        const ProgressBar bar(progress, runs, {"runs/s", 1}, command.is_quiet);
+        is_complete =
+            studies::run_study(study, command.options, folder, {command.is_fresh, &StopSignals::received(), &progress});
     }
     if (!is_complete) {
-        fmt::print(stderr, "raypool: stopped after {} runs, all of them kept; the same command goes on from there\n",
-                   progress.paths.load());
-        return 128 + SIGINT;
+        print(stderr, "raypool: stopped after {} runs, all of them kept; the same command goes on from there\n",
+              progress.paths.load());
+        return 128 + StopSignals::received();
     }
     studies::draw_pictures(folder);
-    if (!command.is_quiet) fmt::print("{}\n", (folder / "summary.md").string());
+    if (!command.is_quiet) print("{}\n", (folder / "summary.md").string());
     return 0;
 }
 
@@ -75,8 +70,8 @@ int study(StudyCommand& command) {
         return 0;
     }
     command.options.seed = parse_seed(command.seed);
-    std::signal(SIGINT, stop);
-    std::signal(SIGTERM, stop);
+    const StopSignals signals;  // end a study after the case under way; a second one at once
+    if (command.options.threads > 0) check_thread_count(static_cast<int>(command.options.threads), "--threads");
     const fs::path folder = command.output.empty() ? fs::path("out") / command.name : fs::path(command.output);
     if (command.name != kReproduce) return run(*studies::make_study(command.name), folder, command);
     for (const std::string& name : studies::paper_studies()) {
@@ -84,7 +79,7 @@ int study(StudyCommand& command) {
         if (status != 0) return status;
     }
     studies::write_reproduction(folder);
-    if (!command.is_quiet) fmt::print("{}\n", (folder / "summary.md").string());
+    if (!command.is_quiet) print("{}\n", (folder / "summary.md").string());
     return 0;
 }
 

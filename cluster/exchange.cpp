@@ -10,13 +10,6 @@ namespace {
 
 constexpr std::size_t kChunkPixels = std::size_t{1} << 18;
 
-std::size_t chosen_count(const Framebuffer& framebuffer, const std::vector<std::uint32_t>* pixels) {
-    return pixels == nullptr ? framebuffer.sums().size() / 3 : pixels->size();
-}
-std::size_t chosen(const std::vector<std::uint32_t>* pixels, std::size_t i) {
-    return pixels == nullptr ? i : (*pixels)[i];
-}
-
 template <class T>
 void broadcast(Ranks& ranks, std::vector<T>& values) {
     values.resize(static_cast<std::size_t>(ranks.greatest(ranks.is_first() ? std::ssize(values) : 0)));
@@ -26,6 +19,7 @@ void broadcast(Ranks& ranks, std::vector<T>& values) {
 /// What of a report has a fixed size, and goes ahead of its threads.
 struct ReportHead {
     double seconds;
+    double setup_s;
     SampleAudit audit;
     std::size_t record_bytes;
     std::size_t pool_bytes;
@@ -38,31 +32,31 @@ void gather(Ranks& ranks, Framebuffer& framebuffer) {
     if (!framebuffer.has_squares()) ranks.sum_at_first(framebuffer.sums());
 }
 
-void clear(Framebuffer& framebuffer, const std::vector<std::uint32_t>* pixels) {
-    for (std::size_t i = 0; i < chosen_count(framebuffer, pixels); ++i) {
-        const std::size_t pixel = chosen(pixels, i);
+void clear(Framebuffer& framebuffer, const std::vector<std::uint32_t>& pixels) {
+    for (const std::size_t pixel : pixels) {
         std::fill_n(framebuffer.sums().begin() + static_cast<std::ptrdiff_t>(3 * pixel), 3, 0);
-        if (framebuffer.has_squares()) framebuffer.squares()[pixel] = 0;
+        if (framebuffer.has_squares())
+            std::fill_n(framebuffer.squares().begin() + static_cast<std::ptrdiff_t>(2 * pixel), 2, 0);
     }
 }
 
-void sum_everywhere(Ranks& ranks, Framebuffer& framebuffer, const std::vector<std::uint32_t>* pixels) {
-    const std::size_t count = chosen_count(framebuffer, pixels);
+void sum_everywhere(Ranks& ranks, Framebuffer& framebuffer, const std::vector<std::uint32_t>& pixels) {
+    const std::size_t count = pixels.size();
     for (std::size_t begin = 0; begin < count; begin += kChunkPixels) {
         const std::size_t end = std::min(begin + kChunkPixels, count);
         std::vector<std::int64_t> packed;
-        packed.reserve(4 * (end - begin));
+        packed.reserve(5 * (end - begin));
         for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t pixel = chosen(pixels, i);
+            const std::size_t pixel = pixels[i];
             for (std::size_t c = 0; c < 3; ++c) packed.push_back(framebuffer.sums()[3 * pixel + c]);
-            packed.push_back(framebuffer.squares()[pixel]);
+            for (std::size_t c = 0; c < 2; ++c) packed.push_back(framebuffer.squares()[2 * pixel + c]);
         }
         ranks.sum_everywhere(packed);
         for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t pixel = chosen(pixels, i);
-            const std::int64_t* sums = &packed[4 * (i - begin)];
+            const std::size_t pixel = pixels[i];
+            const std::int64_t* sums = &packed[5 * (i - begin)];
             std::copy_n(sums, 3, &framebuffer.sums()[3 * pixel]);
-            framebuffer.squares()[pixel] = sums[3];
+            std::copy_n(sums + 3, 2, &framebuffer.squares()[2 * pixel]);
         }
     }
 }
@@ -78,7 +72,7 @@ void broadcast(Ranks& ranks, RenderSums& sums) {
 }
 
 std::vector<RenderReport> gather(Ranks& ranks, const RenderReport& own) {
-    const ReportHead head{own.seconds, own.audit, own.record_bytes, own.pool_bytes};
+    const ReportHead head{own.seconds, own.setup_s, own.audit, own.record_bytes, own.pool_bytes};
     std::vector<std::byte> bytes(sizeof(head) + own.threads.size() * sizeof(ThreadWork));
     std::memcpy(bytes.data(), &head, sizeof(head));
     std::memcpy(bytes.data() + sizeof(head), own.threads.data(), bytes.size() - sizeof(head));
@@ -88,6 +82,7 @@ std::vector<RenderReport> gather(Ranks& ranks, const RenderReport& own) {
         std::memcpy(&other, told.data(), sizeof(other));
         RenderReport& report = reports.emplace_back();
         report.seconds = other.seconds;
+        report.setup_s = other.setup_s;
         report.audit = other.audit;
         report.record_bytes = other.record_bytes;
         report.pool_bytes = other.pool_bytes;
@@ -101,12 +96,13 @@ RenderReport joined(const std::vector<RenderReport>& ranks) {
     RenderReport all;
     for (const RenderReport& rank : ranks) {
         all.seconds = std::max(all.seconds, rank.seconds);
+        all.setup_s = std::max(all.setup_s, rank.setup_s);
         all.audit.add(rank.audit);
         all.record_bytes = std::max(all.record_bytes, rank.record_bytes);
         all.pool_bytes += rank.pool_bytes;
         all.threads.insert(all.threads.end(), rank.threads.begin(), rank.threads.end());
     }
-    for (ThreadWork& thread : all.threads) thread.wait_s = std::max(0.0, all.seconds - thread.busy_s);
+    for (ThreadWork& thread : all.threads) thread.wait_s = std::max(0.0, all.seconds - all.setup_s - thread.busy_s);
     return all;
 }
 

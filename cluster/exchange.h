@@ -15,10 +15,10 @@ namespace raypool::cluster {
 /// Nothing to do for one with second moments (rank_engine.h).
 void gather(Ranks& ranks, Framebuffer& framebuffer);
 
-/// Sets chosen pixels to zero; all where null.
-void clear(Framebuffer& framebuffer, const std::vector<std::uint32_t>* pixels);
-/// Everybody's chosen pixels become the sum of all.
-void sum_everywhere(Ranks& ranks, Framebuffer& framebuffer, const std::vector<std::uint32_t>* pixels);
+/// Sets chosen pixels to zero.
+void clear(Framebuffer& framebuffer, const std::vector<std::uint32_t>& pixels);
+/// Everybody's chosen pixels, the same on all ranks, become the sum of all.
+void sum_everywhere(Ranks& ranks, Framebuffer& framebuffer, const std::vector<std::uint32_t>& pixels);
 
 /// Tells what rank 0 has read from a checkpoint: all but the sums, which one rank must hold and no other, unless they
 /// have second moments.

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -49,54 +52,107 @@ std::vector<std::uint32_t> pixels_of(const CompiledScene<Scalar>& scene, const s
     return pixels;
 }
 
+/// One session of the engine renders all units that this rank takes.
+template <class Scalar>
+class RankSession : public RenderSession {
+  public:
+    RankSession(const Engine& engine, Ranks& ranks, double slowness, const CompiledScene<Scalar>& scene,
+                const RenderSettings& settings, Framebuffer& framebuffer)
+        : ranks_(ranks),
+          slowness_(slowness),
+          scene_(scene),
+          progress_(settings.progress),
+          framebuffer_(framebuffer),
+          is_pending_(framebuffer.has_squares() ? static_cast<std::size_t>(scene.pixel_count()) : 0) {
+        RenderSettings own = settings;
+        own.log_rounds = false;  // they would say nothing of the others' rounds
+        session_ = engine.begin(scene, own, framebuffer);
+        report_ = session_->report();
+    }
+
+  private:
+    RenderReport render(const RenderUnit& all) override {
+        const double start = omp_get_wtime();
+        const std::int64_t places =
+            all.pixels == nullptr ? scene_.pixel_count() : static_cast<std::int64_t>(all.pixels->size());
+        const std::vector<WorkUnit> units = work_units({all.first_sample, all.end_sample}, places, ranks_.count());
+        if (framebuffer_.has_squares()) await(all.pixels);
+
+        RenderReport report;
+        const auto work = [&](std::int64_t i) {
+            const WorkUnit& unit = units[static_cast<std::size_t>(i)];
+            std::vector<std::uint32_t> pixels;
+            const bool is_part = unit.end_place - unit.first_place < places;
+            if (is_part) pixels = pixels_of(scene_, all.pixels, unit.first_place, unit.end_place);
+            const RenderReport part =
+                session_->add({unit.samples.first, unit.samples.end, is_part ? &pixels : all.pixels});
+            report.add(part);
+            const double idle_until = omp_get_wtime() + (slowness_ - 1) * part.seconds;
+            while (omp_get_wtime() < idle_until) continue;  // a slow processor is busy, and leaves its time to nobody
+        };
+        ranks_.hand_out(static_cast<std::int64_t>(units.size()), work, [&](std::int64_t i) {
+            if (progress_ != nullptr) progress_->paths += units[static_cast<std::size_t>(i)].paths();
+        });
+        return timed(std::move(report), start);
+    }
+
+    RenderReport collect() override {
+        const double start = omp_get_wtime();
+        RenderReport report = session_->merge();
+        if (framebuffer_.has_squares()) {
+            sum_everywhere(ranks_, framebuffer_, pending_);
+            for (const std::uint32_t pixel : pending_) is_pending_[pixel] = false;
+            pending_.clear();
+        }
+        return timed(std::move(report), start);
+    }
+
+    /// What all ranks waited for is what rank 0 did.
+    RenderReport timed(RenderReport report, double start) {
+        report.seconds = omp_get_wtime() - start;
+        ranks_.broadcast(std::as_writable_bytes(std::span(&report.seconds, 1)));
+        return report;
+    }
+
+    /// Pixels whose sums are apart from now on until the next merge(): what they were is kept by rank 0 alone.
+    void await(const std::vector<std::uint32_t>* pixels) {
+        std::vector<std::uint32_t> more;
+        const auto add = [&](std::uint32_t pixel) {
+            if (is_pending_[pixel]) return;
+            is_pending_[pixel] = true;
+            more.push_back(pixel);
+        };
+        if (pixels == nullptr) {
+            for (std::int64_t i = 0; i < scene_.pixel_count(); ++i) add(static_cast<std::uint32_t>(i));
+        } else {
+            std::for_each(pixels->begin(), pixels->end(), add);
+        }
+        if (!ranks_.is_first()) clear(framebuffer_, more);
+        pending_.insert(pending_.end(), more.begin(), more.end());
+    }
+
+    Ranks& ranks_;
+    double slowness_;
+    const CompiledScene<Scalar>& scene_;
+    Progress* progress_;
+    Framebuffer& framebuffer_;
+    std::unique_ptr<RenderSession> session_;
+    std::vector<bool> is_pending_;  ///< by pixel, with second moments
+    std::vector<std::uint32_t> pending_;
+};
+
 }  // namespace
 
 RankEngine::RankEngine(std::unique_ptr<Engine> engine, Ranks& ranks)
     : engine_(std::move(engine)), ranks_(ranks), slowness_(asked_slowness(ranks.rank())) {}
 
-template <class Scalar>
-RenderReport RankEngine::share(const CompiledScene<Scalar>& scene, const RenderSettings& settings,
-                               Framebuffer& framebuffer) const {
-    const double start = omp_get_wtime();
-    const std::int64_t places =
-        settings.pixels == nullptr ? scene.pixel_count() : static_cast<std::int64_t>(settings.pixels->size());
-    const std::vector<WorkUnit> units =
-        work_units({settings.first_sample, settings.end_sample}, places, ranks_.count());
-    if (framebuffer.has_squares() && !ranks_.is_first()) clear(framebuffer, settings.pixels);
-
-    RenderReport report;
-    const auto work = [&](std::int64_t i) {
-        const WorkUnit& unit = units[static_cast<std::size_t>(i)];
-        RenderSettings own = settings;
-        own.first_sample = unit.samples.first;
-        own.end_sample = unit.samples.end;
-        own.log_rounds = false;  // they would say nothing of the others' rounds
-        std::vector<std::uint32_t> pixels;
-        if (unit.end_place - unit.first_place < places) {
-            pixels = pixels_of(scene, settings.pixels, unit.first_place, unit.end_place);
-            own.pixels = &pixels;
-        }
-        const RenderReport part = engine_->render(scene, own, framebuffer);
-        report.add(part);
-        const double idle_until = omp_get_wtime() + (slowness_ - 1) * part.seconds;
-        while (omp_get_wtime() < idle_until) continue;  // a slow processor is busy, and leaves its time to nobody
-    };
-    ranks_.hand_out(static_cast<std::int64_t>(units.size()), work, [&](std::int64_t i) {
-        if (settings.progress != nullptr) settings.progress->paths += units[static_cast<std::size_t>(i)].paths();
-    });
-    if (framebuffer.has_squares()) sum_everywhere(ranks_, framebuffer, settings.pixels);
-    report.seconds = omp_get_wtime() - start;
-    ranks_.broadcast(std::as_writable_bytes(std::span(&report.seconds, 1)));
-    return report;
+std::unique_ptr<RenderSession> RankEngine::begin(const CompiledScene<float>& scene, const RenderSettings& settings,
+                                                 Framebuffer& framebuffer) const {
+    return std::make_unique<RankSession<float>>(*engine_, ranks_, slowness_, scene, settings, framebuffer);
 }
-
-RenderReport RankEngine::render(const CompiledScene<float>& scene, const RenderSettings& settings,
-                                Framebuffer& framebuffer) const {
-    return share(scene, settings, framebuffer);
-}
-RenderReport RankEngine::render(const CompiledScene<double>& scene, const RenderSettings& settings,
-                                Framebuffer& framebuffer) const {
-    return share(scene, settings, framebuffer);
+std::unique_ptr<RenderSession> RankEngine::begin(const CompiledScene<double>& scene, const RenderSettings& settings,
+                                                 Framebuffer& framebuffer) const {
+    return std::make_unique<RankSession<double>>(*engine_, ranks_, slowness_, scene, settings, framebuffer);
 }
 
 }  // namespace raypool::cluster

@@ -6,7 +6,7 @@
 ///
 /// Sums stay where they were made until gather(), so a render costs one reduction, however many pieces it has: before,
 /// only the sum over ranks of their framebuffers means anything. An adaptive render must know all sums to decide what
-/// is next; a framebuffer with second moments is therefore whole on every rank after each render().
+/// is next; a framebuffer with second moments is therefore whole on every rank after each merge().
 #pragma once
 
 #include <memory>
@@ -23,16 +23,14 @@ class RankEngine : public Engine {
     RankEngine(std::unique_ptr<Engine> engine, Ranks& ranks);
 
     [[nodiscard]] std::string name() const override { return engine_->name(); }
-    RenderReport render(const CompiledScene<float>& scene, const RenderSettings& settings,
-                        Framebuffer& framebuffer) const override;
-    RenderReport render(const CompiledScene<double>& scene, const RenderSettings& settings,
-                        Framebuffer& framebuffer) const override;
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene,
+                                                       const RenderSettings& settings,
+                                                       Framebuffer& framebuffer) const override;
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<double>& scene,
+                                                       const RenderSettings& settings,
+                                                       Framebuffer& framebuffer) const override;
 
   private:
-    template <class Scalar>
-    RenderReport share(const CompiledScene<Scalar>& scene, const RenderSettings& settings,
-                       Framebuffer& framebuffer) const;
-
     std::unique_ptr<Engine> engine_;
     Ranks& ranks_;
     double slowness_ = 1;

@@ -33,6 +33,9 @@ class Ranks {
     [[nodiscard]] bool is_first() const { return rank_ == 0; }
     /// How many of the ranks share this machine's memory.
     [[nodiscard]] int on_this_machine() const { return on_this_machine_; }
+    /// How many processes were started alike, this one among them, that know nothing of each other: srun without MPI.
+    [[nodiscard]] int separate_count() const { return separate_count_; }
+    void set_separate_count(int count) { separate_count_ = count; }
 
     /// Says what went wrong and, where there are other ranks, ends all of them. Returns the status. Not collective.
     virtual int fail(int status, const std::string& text) const {
@@ -65,6 +68,7 @@ class Ranks {
     int rank_ = 0;
     int count_ = 1;
     int on_this_machine_ = 1;
+    int separate_count_ = 1;
 };
 
 /// Joins the ranks of a launcher; one rank where none has started this process. Throws InputError where several were

@@ -12,7 +12,6 @@ namespace raypool {
 namespace {
 
 constexpr int kBins = 32;
-constexpr int kMostSahLevels = 40;       ///< below that, halves: no scene makes a tree too deep for a traversal's stack
 constexpr double kLeastExtent = 1e-290;  ///< of centres worth splitting; keeps kBins / extent finite
 
 struct Split {
@@ -132,6 +131,7 @@ class Builder {
 
 BinaryBvh build_binary_bvh(const std::vector<Box>& boxes, std::uint32_t block) {
     RAYPOOL_CHECK(block > 0, "a leaf holds at least one primitive");
+    RAYPOOL_CHECK(boxes.size() <= kMostBoxes, "a traversal's stack holds the tree");
     return Builder(boxes, block).build();
 }
 

@@ -5,6 +5,8 @@
 /// primitive is bounded over the whole shutter. The tree's shape never shows in an image (shapes.h says why).
 #pragma once
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -40,7 +42,15 @@ struct BinaryBvh {
     std::vector<std::uint32_t> order;  ///< a permutation of the boxes' indices
 };
 
-/// Leaves hold at most `block` boxes.
+/// What bounds the depth of a tree: a node is split by the heuristic on the first so many levels, and below in halves.
+inline constexpr int kMostSahLevels = 40;
+/// The most boxes of a tree.
+inline constexpr std::size_t kMostBoxes = std::size_t{1} << 24U;
+/// The most inner nodes on a way from the root to a leaf. The heuristic may split off a box a level. Halves of n boxes,
+/// the larger of them taken each time, are single boxes after ceil(log2(n)) levels.
+inline constexpr int kMostTreeLevels = kMostSahLevels + std::bit_width(kMostBoxes - 1);
+
+/// Leaves hold at most `block` boxes. At most kMostBoxes boxes.
 BinaryBvh build_binary_bvh(const std::vector<Box>& boxes, std::uint32_t block);
 
 /// One node of a tree `width` wide, as a single ray reads it: bounds[axis][0] low, [1] high, a lane a child.
@@ -60,7 +70,7 @@ struct WideBvh {
     std::vector<WideNode<Scalar, width>> nodes;  ///< node 0 is the root; empty when there is nothing to hit
     std::vector<Leaf> leaves;
     std::vector<std::uint32_t> order;
-    int depth = 0;  ///< levels of nodes
+    int depth = 0;  ///< levels of nodes; at most kMostTreeLevels, or 1 where the root has nothing but a leaf
 };
 
 /// Opens the largest child again and again until a node has `width` children. The boxes must be exact in Scalar.

@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 
 #include "core/error.h"
+#include "core/shape_bounds.h"
 
 namespace raypool {
 
@@ -15,76 +15,6 @@ namespace {
 
 /// A sphere is tested up front when its box is more than this part of the box of all smaller ones.
 constexpr double kLargeArea = 0.01;
-
-/// Half the edge of a sphere's box: the radius, and room for the rounding of centre + radius and of distances.
-template <class Scalar>
-Scalar padded_radius(const Sphere& sphere) {
-    const double reach = std::max(sphere.center0.cwiseAbs().maxCoeff(), sphere.center1.cwiseAbs().maxCoeff());
-    const double epsilon = std::numeric_limits<Scalar>::epsilon();
-    return static_cast<Scalar>(sphere.radius * (1 + 8 * epsilon) + 4 * epsilon * (reach + sphere.radius));
-}
-
-/// One more ulp on either side: room for the rounding of the union over time.
-template <class Scalar>
-Box widened(const Box& box) {
-    Box wide;
-    for (int axis = 0; axis < 3; ++axis) {
-        constexpr Scalar kFar = std::numeric_limits<Scalar>::infinity();
-        wide.low[axis] = std::nextafter(static_cast<Scalar>(box.low[axis]), -kFar);
-        wide.high[axis] = std::nextafter(static_cast<Scalar>(box.high[axis]), kFar);
-    }
-    return wide;
-}
-
-/// The box over all times, exact in Scalar. It holds every box that a kernel makes of center_at(time) -+ padded radius.
-template <class Scalar>
-Box sphere_box(const Sphere& sphere) {
-    const Scalar r = padded_radius<Scalar>(sphere);
-    Box box;
-    for (const double time : {0.0, 1.0}) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const Scalar from = static_cast<Scalar>(sphere.center0[axis]);
-            const Scalar motion = static_cast<Scalar>(sphere.center1[axis] - sphere.center0[axis]);
-            const Scalar center = from + static_cast<Scalar>(time) * motion;
-            box.low[axis] = std::min(box.low[axis], static_cast<double>(static_cast<Scalar>(center - r)));
-            box.high[axis] = std::max(box.high[axis], static_cast<double>(static_cast<Scalar>(center + r)));
-        }
-    }
-    return widened<Scalar>(box);
-}
-
-template <class Scalar>
-Box quad_box(const Quad& quad) {
-    Box box;
-    for (const double s : {0.0, 1.0}) {
-        for (const double t : {0.0, 1.0}) {
-            const Vector3d corner = quad.corner + s * quad.edge_u + t * quad.edge_v;
-            box.extend({corner, corner});
-        }
-    }
-    const double reach = std::max(box.low.cwiseAbs().maxCoeff(), box.high.cwiseAbs().maxCoeff());
-    const double pad = 16 * static_cast<double>(std::numeric_limits<Scalar>::epsilon()) * reach;
-    return widened<Scalar>({box.low.array() - pad, box.high.array() + pad});
-}
-
-struct FlatShape {
-    Vector3d corner, normal, dual_u, dual_v;
-    int material_id;
-};
-
-FlatShape flat_shape(const Quad& quad) {
-    const Vector3d n = quad.edge_u.cross(quad.edge_v);
-    return {quad.corner, n.normalized(), quad.edge_v.cross(n) / n.squaredNorm(), n.cross(quad.edge_u) / n.squaredNorm(),
-            quad.material_id};
-}
-
-/// A plane's coordinates run along the image of the x axis (or the z axis, when the plane faces x) within it.
-FlatShape flat_shape(const Plane& plane) {
-    const Vector3d n = plane.normal.normalized();
-    const Vector3d axis = std::abs(n.x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitZ();
-    const Vector3d u = (axis - axis.dot(n) * n).normalized();
-    return {plane.point, n, u, n.cross(u), plane.material_id};
-}
 
 enum class Shape : std::uint8_t { Sphere, Quad, Plane };
 
@@ -98,7 +28,7 @@ ImageRepeat image_repeat(Texture::Wrap wrap, Shape shape) {
 template <class Scalar>
 class Compiler {
   public:
-    explicit Compiler(const Scene& scene) : scene_(scene) {}
+    Compiler(const Scene& scene, const Coincidence& coincidence) : scene_(scene), coincidence_(coincidence) {}
 
     CompiledScene<Scalar> compile() {
         check_size();
@@ -115,6 +45,7 @@ class Compiler {
         add_surfaces();
         add_spheres();
         add_flats();
+        CompiledScene<Scalar>::for_each_table(out_, [](auto& table) { table.shrink_to_fit(); });
         return std::move(out_);
     }
 
@@ -127,10 +58,10 @@ class Compiler {
         if (scene_.width * scene_.height > kMostPixels)
             throw InputError(
                 fmt::format("image of {} x {}: must have at most 2^32 pixels", scene_.width, scene_.height));
-        constexpr std::size_t kMostPrimitives = std::size_t{1} << 24U;  // whole in a float
+        static_assert(kMostBoxes <= std::size_t{1} << 24U, "an id is whole in a float");
         const std::size_t count = scene_.spheres.size() + scene_.quads.size() + scene_.planes.size();
-        if (count > kMostPrimitives)
-            throw InputError(fmt::format("scene of {} shapes: must have at most {}", count, kMostPrimitives));
+        if (count > kMostBoxes)
+            throw InputError(fmt::format("scene of {} shapes: must have at most {}", count, kMostBoxes));
     }
 
     void add_textures() {
@@ -198,6 +129,7 @@ class Compiler {
                 row.value[Row::kMotion + i] = static_cast<Scalar>(sphere.center1[i] - sphere.center0[i]);
             }
             row.value[Row::kRadius] = static_cast<Scalar>(sphere.radius);
+            row.value[Row::kGroup] = static_cast<Scalar>(out_.surfaces.size());
             out_.surfaces.push_back(row);
         }
         for (const Quad& quad : scene_.quads) add_flat_surface(flat_shape(quad), Shape::Quad);
@@ -207,8 +139,11 @@ class Compiler {
     void add_flat_surface(const FlatShape& shape, Shape kind) {
         SurfaceRow<Scalar> surface = surface_row(shape.material_id, kind);
         FlatRow<Scalar> flat{};
+        const Coincidence::Flat& met = coincidence_.flats[out_.flats.size()];
+        surface.value[SurfaceRow<Scalar>::kGroup] = static_cast<Scalar>(met.group);
         for (int i = 0; i < 3; ++i) {
-            surface.value[SurfaceRow<Scalar>::kCenter + i] = static_cast<Scalar>(shape.normal[i]);
+            surface.value[SurfaceRow<Scalar>::kCenter + i] = static_cast<Scalar>(met.normal[i]);
+            surface.value[SurfaceRow<Scalar>::kMotion + i] = static_cast<Scalar>(met.point[i]);
             flat.value[FlatRow<Scalar>::kCorner + i] = static_cast<Scalar>(shape.corner[i]);
             flat.value[FlatRow<Scalar>::kDualU + i] = static_cast<Scalar>(shape.dual_u[i]);
             flat.value[FlatRow<Scalar>::kDualV + i] = static_cast<Scalar>(shape.dual_v[i]);
@@ -220,11 +155,10 @@ class Compiler {
 
     /// Sets aside the spheres that span the scene, largest first, as long as each dwarfs all that are smaller.
     void add_spheres() {
-        const std::size_t count = scene_.spheres.size();
-        std::vector<Box> box(count);
-        std::vector<std::uint32_t> by_area(count);
-        std::iota(by_area.begin(), by_area.end(), 0U);
-        for (std::size_t i = 0; i < count; ++i) box[i] = sphere_box<Scalar>(scene_.spheres[i]);
+        std::vector<Box> box(scene_.spheres.size());
+        Ids by_area = shown_ids(0, scene_.spheres.size());
+        const std::size_t count = by_area.size();
+        for (const std::uint32_t id : by_area) box[id] = sphere_box<Scalar>(scene_.spheres[id]);
         std::stable_sort(by_area.begin(), by_area.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return box[a].area() > box[b].area(); });
         std::vector<double> area_after(count + 1, 0);
@@ -254,26 +188,36 @@ class Compiler {
     }
 
     void add_flats() {
+        const std::size_t first_plane = scene_.spheres.size() + scene_.quads.size();
+        const Ids ids = shown_ids(scene_.spheres.size(), first_plane);
+        const auto box_of = [&](std::uint32_t id) {
+            return quad_box<Scalar>(scene_.quads[id - scene_.spheres.size()]);
+        };
         std::vector<Box> boxes;
-        std::vector<std::uint32_t> ids(scene_.quads.size());
-        std::iota(ids.begin(), ids.end(), static_cast<std::uint32_t>(scene_.spheres.size()));
-        for (const Quad& quad : scene_.quads) boxes.push_back(quad_box<Scalar>(quad));
+        for (const std::uint32_t id : ids) boxes.push_back(box_of(id));
         const auto make_tree = [&]<int width>() {
             return block_tree<FlatBlock<Scalar, width>, width>(boxes, ids, [&](const Ids& in_leaf) {
                 std::vector<Box> leaf_boxes;
-                for (const std::uint32_t id : in_leaf) leaf_boxes.push_back(boxes[id - ids.front()]);
+                for (const std::uint32_t id : in_leaf) leaf_boxes.push_back(box_of(id));
                 return flat_block<width>(in_leaf, leaf_boxes);
             });
         };
         out_.quad_tree = make_tree.template operator()<kWidth>();
         out_.quad_stream_tree = make_tree.template operator()<kStreamTreeWidth>();
-        const auto first_plane = static_cast<std::uint32_t>(scene_.spheres.size() + scene_.quads.size());
-        for (std::uint32_t i = 0; i < scene_.planes.size(); i += kWidth) {
-            std::vector<std::uint32_t> block;
-            for (std::uint32_t k = i; k < std::min<std::size_t>(i + kWidth, scene_.planes.size()); ++k)
-                block.push_back(first_plane + k);
+        const Ids planes = shown_ids(first_plane, first_plane + scene_.planes.size());
+        for (std::size_t i = 0; i < planes.size(); i += kWidth) {
+            const Ids block(planes.begin() + static_cast<std::ptrdiff_t>(i),
+                            planes.begin() + static_cast<std::ptrdiff_t>(std::min(i + kWidth, planes.size())));
             out_.planes.push_back(flat_block<kWidth>(block, std::vector<Box>(block.size())));
         }
+    }
+
+    /// Of the ids in [first, end), those of shapes that no earlier one hides.
+    [[nodiscard]] Ids shown_ids(std::size_t first, std::size_t end) const {
+        Ids ids;
+        for (std::size_t id = first; id < end; ++id)
+            if (!coincidence_.is_hidden[id]) ids.push_back(static_cast<std::uint32_t>(id));
+        return ids;
     }
 
     template <int width>
@@ -304,6 +248,7 @@ class Compiler {
             const SurfaceRow<Scalar>& surface = out_.surfaces[ids[lane]];
             const FlatRow<Scalar>& flat = out_.flats[ids[lane] - scene_.spheres.size()];
             for (int i = 0; i < 3; ++i) {
+                block.point[i][lane] = surface.value[SurfaceRow<Scalar>::kMotion + i];
                 block.corner[i][lane] = flat.value[FlatRow<Scalar>::kCorner + i];
                 block.normal[i][lane] = surface.value[SurfaceRow<Scalar>::kCenter + i];
                 block.dual_u[i][lane] = flat.value[FlatRow<Scalar>::kDualU + i];
@@ -311,6 +256,7 @@ class Compiler {
                 block.low[i][lane] = static_cast<Scalar>(boxes[lane].low[i]);
                 block.high[i][lane] = static_cast<Scalar>(boxes[lane].high[i]);
             }
+            block.group[lane] = static_cast<std::int32_t>(surface.value[SurfaceRow<Scalar>::kGroup]);
             block.id[lane] = static_cast<std::int32_t>(ids[lane]);
         }
         return block;
@@ -332,31 +278,34 @@ class Compiler {
     }
 
     const Scene& scene_;
+    const Coincidence& coincidence_;
     CompiledScene<Scalar> out_;
 };
-
-template <class T>
-std::size_t bytes_of(const std::vector<T>& v) {
-    return v.size() * sizeof(T);
-}
 
 }  // namespace
 
 template <class Scalar>
 std::size_t CompiledScene<Scalar>::bytes() const {
-    return sizeof(*this) + bytes_of(surfaces) + bytes_of(textures) + bytes_of(flats) + bytes_of(images) +
-           bytes_of(texels) + bytes_of(large_spheres) + bytes_of(planes) + bytes_of(sphere_tree.nodes) +
-           bytes_of(sphere_tree.blocks) + bytes_of(quad_tree.nodes) + bytes_of(quad_tree.blocks);
+    std::size_t bytes = sizeof(*this);
+    for_each_table(*this, [&](const auto& table) { bytes += table.capacity() * sizeof(table[0]); });
+    return bytes;
+}
+
+template <class Scalar>
+CompiledScene<Scalar> compile(const Scene& scene, const Coincidence& coincidence) {
+    return Compiler<Scalar>(scene, coincidence).compile();
 }
 
 template <class Scalar>
 CompiledScene<Scalar> compile(const Scene& scene) {
-    return Compiler<Scalar>(scene).compile();
+    return compile<Scalar>(scene, find_coincidence<Scalar>(scene));
 }
 
 template struct CompiledScene<float>;
 template struct CompiledScene<double>;
 template CompiledScene<float> compile(const Scene&);
 template CompiledScene<double> compile(const Scene&);
+template CompiledScene<float> compile(const Scene&, const Coincidence&);
+template CompiledScene<double> compile(const Scene&, const Coincidence&);
 
 }  // namespace raypool

@@ -10,6 +10,7 @@
 
 #include "core/bvh.h"
 #include "core/camera.h"
+#include "core/coincidence.h"
 #include "core/needs.h"
 #include "core/scene.h"
 #include "core/textures.h"
@@ -22,13 +23,14 @@ struct alignas(16 * sizeof(Scalar)) SurfaceRow {
     enum Column {
         kCenter = 0,     ///< of a sphere at time 0, three; or the unit normal of a quad or plane
         kRadius = 3,     ///< 0 marks a quad or plane
-        kMotion = 4,     ///< of the centre from time 0 to 1, three
+        kMotion = 4,     ///< of the centre from time 0 to 1, three; or a point of the plane of a quad or plane
         kParameter = 7,  ///< fuzz of metal, index of refraction of glass
         kColour = 8,     ///< three: albedo or radiance; of a checker the even colour
         kMaterial = 11,  ///< Material::Kind
         kTexture = 12,   ///< Texture::Kind; of an image its number plus ImageRepeat's
         kTextureRow = 13,
         kFlatRow = 14,
+        kGroup = 15,  ///< what a ray that leaves the primitive leaves: its id, or that of the shapes in one plane
         kColumns = 16
     };
     Scalar value[kColumns];
@@ -62,13 +64,15 @@ struct alignas(64) SphereBlock {
 template <class Scalar, int lanes>
 struct alignas(64) FlatBlock {
     static constexpr int kLanes = lanes;
-    Scalar corner[3][lanes];
+    Scalar point[3][lanes];  ///< of the plane; coincident shapes have the same one
     Scalar normal[3][lanes];
+    Scalar corner[3][lanes];  ///< what coordinates are measured from; unused by planes
     Scalar dual_u[3][lanes];  ///< unused by planes
     Scalar dual_v[3][lanes];
     Scalar low[3][lanes];  ///< the padded box; unused by planes
     Scalar high[3][lanes];
     std::int32_t id[lanes];
+    std::int32_t group[lanes];  ///< SurfaceRow::kGroup: what a ray leaves
 };
 
 /// A tree whose leaf i is block i.
@@ -130,14 +134,40 @@ struct CompiledScene {
     }
 
     [[nodiscard]] std::int64_t pixel_count() const { return width * height; }
-    [[nodiscard]] std::size_t bytes() const;  ///< of all tables
+    [[nodiscard]] std::size_t bytes() const;  ///< of all tables, with this
+
+    /// Calls visit(std::vector&) for every table: the one list of them.
+    template <class Self, class Visit>
+    static void for_each_table(Self& self, Visit visit) {
+        visit(self.surfaces);
+        visit(self.textures);
+        visit(self.flats);
+        visit(self.images);
+        visit(self.texels);
+        visit(self.large_spheres);
+        visit(self.planes);
+        const auto visit_tree = [&](auto& tree) {
+            visit(tree.nodes);
+            visit(tree.blocks);
+        };
+        visit_tree(self.sphere_tree);
+        visit_tree(self.quad_tree);
+        visit_tree(self.sphere_stream_tree);
+        visit_tree(self.quad_stream_tree);
+    }
 };
 
-/// Refuses (InputError) an image of more than 2^32 pixels, or more primitives than ids.
+/// Refuses (InputError) an image of more than 2^32 pixels, or more primitives than ids. Shapes that coincide count once
+/// (coincidence.h); one that is hidden keeps its id and its row, and is in no block.
 template <class Scalar>
 CompiledScene<Scalar> compile(const Scene& scene);
+/// The same with what coincides said by the caller.
+template <class Scalar>
+CompiledScene<Scalar> compile(const Scene& scene, const Coincidence& coincidence);
 
 extern template CompiledScene<float> compile(const Scene&);
 extern template CompiledScene<double> compile(const Scene&);
+extern template CompiledScene<float> compile(const Scene&, const Coincidence&);
+extern template CompiledScene<double> compile(const Scene&, const Coincidence&);
 
 }  // namespace raypool

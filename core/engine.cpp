@@ -8,12 +8,18 @@ namespace raypool {
 
 void RenderReport::add(const RenderReport& later) {
     seconds += later.seconds;
+    setup_s += later.setup_s;
     if (threads.size() < later.threads.size()) threads.resize(later.threads.size());
     for (std::size_t i = 0; i < later.threads.size(); ++i) threads[i].add(later.threads[i]);
     audit.add(later.audit);
     rounds.insert(rounds.end(), later.rounds.begin(), later.rounds.end());
     record_bytes = std::max(record_bytes, later.record_bytes);
     pool_bytes = std::max(pool_bytes, later.pool_bytes);
+}
+
+RenderReport render_whole(RenderSession& session, const RenderSettings& settings) {
+    session.add({settings.first_sample, settings.end_sample, settings.pixels});
+    return session.finish();
 }
 
 void check_settings(const RenderSettings& settings, const Framebuffer& framebuffer) {

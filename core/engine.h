@@ -1,4 +1,4 @@
-/// What every engine is asked and what it answers: RenderSettings, RenderReport, Engine.
+/// What every engine is asked and what it answers: RenderSettings, RenderSession, RenderReport, Engine.
 ///
 /// An engine owns the order of the work and nothing else; all physics is in core/. For one scene, precision, seed,
 /// depth and sample range, every engine and every setting of the loop makes the same sums.
@@ -7,7 +7,9 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/compiled_scene.h"
@@ -37,6 +39,7 @@ struct Grain {
 /// Paths finished so far, for whoever shows it. Engines add, in batches; another thread may read at any time.
 struct Progress {
     std::atomic<std::int64_t> paths = 0;
+    std::atomic<std::int64_t> before = 0;  ///< of these, from a run that is gone on with: they took no time now
 };
 
 struct RenderSettings {
@@ -47,10 +50,10 @@ struct RenderSettings {
     const std::vector<std::uint32_t>* pixels = nullptr;
     std::uint64_t seed = 0;
     Sampler sampler = Sampler::Independent;
-    int split_depth = 0;  ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits
+    int split_depth = 0;    ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits
     bool roulette = false;  ///< end paths that carry little by chance, without bias (core/shade.h)
     int threads = 1;
-    LoopSchedule schedule;
+    LoopSchedule schedule;  ///< of an engine that loops over the image; so is the grain
     Grain grain;
     bool count_work = false;  ///< count box and primitive tests (slower: with code compiled for every feature)
     bool log_rounds = false;  ///< report the rounds of a wavefront engine; two looks at the clock a stage and batch
@@ -105,7 +108,10 @@ struct alignas(64) ThreadWork {
 };
 
 struct RenderReport {
-    double seconds = 0;  ///< wall clock of the parallel region, and of making a shared pool
+    /// Wall clock of all that an engine does for a render: setup_s, the parallel loops, and what brings sums that were
+    /// kept elsewhere into the framebuffer. Of these, threads are busy or wait in all but setup_s.
+    double seconds = 0;
+    double setup_s = 0;  ///< of checking the stack, and of making pools, the stages' memory and accumulators
     std::vector<ThreadWork> threads;
     SampleAudit audit;
     std::vector<RoundWork> rounds;  ///< of a wavefront engine, with log_rounds or a trace
@@ -123,6 +129,52 @@ struct RenderReport {
     }
 };
 
+/// What is rendered at a time: samples [first_sample, end_sample) of some pixels, in rising order; of all where null.
+struct RenderUnit {
+    std::int64_t first_sample = 0;
+    std::int64_t end_sample = 0;
+    const std::vector<std::uint32_t>* pixels = nullptr;
+};
+
+/// A render in units: pieces between checkpoints, a rank's share, passes of an adaptive render. It holds what is set up
+/// once for all of them: pools, the stages' memory, accumulators. What it was made of outlives it; for one thread.
+class RenderSession {
+  public:
+    RenderSession() = default;
+    RenderSession(const RenderSession&) = delete;
+    RenderSession& operator=(const RenderSession&) = delete;
+    virtual ~RenderSession() = default;
+
+    /// Renders the unit. Its samples are in the framebuffer, or kept until merge(). Returns what this unit took.
+    RenderReport add(const RenderUnit& unit) {
+        RenderReport part = render(unit);
+        report_.add(part);
+        return part;
+    }
+    /// Brings all that was added into the framebuffer. More may be added afterwards. Returns what it took.
+    RenderReport merge() {
+        RenderReport part = collect();
+        report_.add(part);
+        return part;
+    }
+    /// Of the setup, and all that was added and merged.
+    [[nodiscard]] const RenderReport& report() const { return report_; }
+    /// Merges, and gives the report away: nothing may be added afterwards.
+    RenderReport finish() {
+        merge();
+        return std::move(report_);
+    }
+
+  protected:
+    virtual RenderReport render(const RenderUnit& unit) = 0;
+    virtual RenderReport collect() { return {}; }
+
+    RenderReport report_;
+};
+
+/// Renders the samples and pixels of `settings`, the only unit of its session.
+RenderReport render_whole(RenderSession& session, const RenderSettings& settings);
+
 class Engine {
   public:
     Engine() = default;
@@ -131,21 +183,37 @@ class Engine {
     virtual ~Engine() = default;
 
     [[nodiscard]] virtual std::string name() const = 0;
+    /// Whether threads get parts of the image, as RenderSettings::schedule and grain say. Where not, the two do
+    /// nothing.
+    [[nodiscard]] virtual bool loops_over_image() const { return true; }
 
-    /// Adds the samples to the framebuffer, which has the scene's size. Throws InputError for settings that this
-    /// engine cannot carry out on this machine; the framebuffer is then untouched.
-    virtual RenderReport render(const CompiledScene<float>& scene, const RenderSettings& settings,
-                                Framebuffer& framebuffer) const = 0;
-    virtual RenderReport render(const CompiledScene<double>& scene, const RenderSettings& settings,
-                                Framebuffer& framebuffer) const = 0;
+    /// Begins a render into the framebuffer, which has the scene's size. Of the settings, the samples and pixels are
+    /// left to the units. Throws InputError for settings that this engine cannot carry out on this machine, and for
+    /// pools and accumulators that do not fit into its memory; the framebuffer is then untouched.
+    [[nodiscard]] virtual std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene,
+                                                               const RenderSettings& settings,
+                                                               Framebuffer& framebuffer) const = 0;
+    [[nodiscard]] virtual std::unique_ptr<RenderSession> begin(const CompiledScene<double>& scene,
+                                                               const RenderSettings& settings,
+                                                               Framebuffer& framebuffer) const = 0;
+
+    /// Adds the samples of the settings to the framebuffer.
+    template <class Scalar>
+    RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& settings,
+                        Framebuffer& framebuffer) const {
+        return render_whole(*begin(scene, settings, framebuffer), settings);
+    }
 };
 
 /// The paths that a render will follow.
 template <class Scalar>
+std::int64_t path_count(const CompiledScene<Scalar>& scene, const RenderUnit& unit) {
+    const auto pixels = unit.pixels == nullptr ? scene.pixel_count() : static_cast<std::int64_t>(unit.pixels->size());
+    return pixels * (unit.end_sample - unit.first_sample);
+}
+template <class Scalar>
 std::int64_t path_count(const CompiledScene<Scalar>& scene, const RenderSettings& settings) {
-    const auto pixels =
-        settings.pixels == nullptr ? scene.pixel_count() : static_cast<std::int64_t>(settings.pixels->size());
-    return pixels * (settings.end_sample - settings.first_sample);
+    return path_count(scene, RenderUnit{settings.first_sample, settings.end_sample, settings.pixels});
 }
 
 /// What engines refuse alike, as an InputError.

@@ -1,19 +1,10 @@
 #include "core/exr_header.h"
 
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfCompression.h>
-#include <OpenEXR/ImfPartType.h>
-#include <OpenEXR/ImfTileDescription.h>
-#include <OpenEXR/ImfVersion.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <string>
 #include <string_view>
-
-#include "core/exr_stream.h"
 
 namespace raypool {
 namespace {
@@ -76,9 +67,14 @@ constexpr std::array<FixedType, 24> kFixedTypes{{{"box2f", 16},
                                                  {"v3f", 12},
                                                  {"v3i", 12}}};
 
-void take_channels(Walk& value) {
+std::int64_t count_channels(Walk& value) {
     constexpr std::size_t kChannelBytes = 16;  // type, linearity and sampling
-    while (!value.take_name().empty()) value.take(kChannelBytes);
+    std::int64_t count = 0;
+    while (!value.take_name().empty()) {
+        value.take(kChannelBytes);
+        ++count;
+    }
+    return count;
 }
 
 void take_preview(Walk& value) {
@@ -89,134 +85,61 @@ void take_preview(Walk& value) {
     value.take(texels > SIZE_MAX / kTexelBytes ? SIZE_MAX : texels * kTexelBytes);
 }
 
-/// Takes what OpenEXR would take for a value of the type. False if the type is none of those it reads alike in all its
-/// versions.
-bool take_value(std::string_view type, Walk& value, std::size_t size) {
+/// Takes what OpenEXR would take for a value of the type. False if the type is none that all its versions read alike.
+bool take_value(std::string_view type, Walk& value, std::size_t size, std::int64_t& channel_count) {
     const auto* const fixed = std::find_if(kFixedTypes.begin(), kFixedTypes.end(),
                                            [&](const FixedType& candidate) { return candidate.name == type; });
     if (fixed != kFixedTypes.end()) {
         value.take(fixed->size);
     } else if (type == "chlist") {
-        take_channels(value);
+        channel_count += count_channels(value);
     } else if (type == "floatvector") {
         value.take(size - size % sizeof(float));
     } else if (type == "stringvector") {
         while (!value.is_at_end()) value.take_sized();
     } else if (type == "preview") {
         take_preview(value);
-    } else if (type == "string") {
-        value.take(size);
     } else {
         value.take(size);
-        return false;
+        return type == "string";
     }
     return true;
 }
 
-/// Checks all attributes, notes the types that OpenEXR must not see; returns the version with its flags.
-std::int32_t check_attributes(BytesView bytes, std::vector<std::size_t>& hidden) {
-    const auto* const begin = reinterpret_cast<const char*>(bytes.data());
-    Walk walk({begin, bytes.size()});
-    if (walk.take_int() != Imf::MAGIC) throw std::runtime_error("not an EXR file");
-    const std::int32_t version = walk.take_int();
-    if (Imf::getVersion(version) != 2 || !Imf::supportsFlags(Imf::getFlags(version))) {
-        throw std::runtime_error("must be of version 2 and have no flags beyond it");
+/// The attributes of a part, up to the empty name behind them. Returns the number of channels; notes the types that
+/// are to be hidden, by their place after `begin`.
+std::int64_t take_part(Walk& walk, std::string_view first_name, const char* begin, std::vector<std::size_t>& hidden) {
+    std::int64_t channel_count = 0;
+    for (std::string_view name = first_name; !name.empty(); name = walk.take_name()) {
+        const std::string_view type = walk.take_name();
+        const std::string_view content = walk.take_sized();
+        Walk value(content);
+        if (!take_value(type, value, content.size(), channel_count) && !type.empty())
+            hidden.push_back(static_cast<std::size_t>(type.data() - begin));
+        if (!value.is_at_end()) throw std::runtime_error("an attribute is longer than its type");
     }
-    const bool is_multi_part = Imf::isMultiPart(version);
-    for (std::string_view name = walk.take_name(); !name.empty(); name = is_multi_part ? walk.take_name() : "") {
-        for (; !name.empty(); name = walk.take_name()) {
-            const std::string_view type = walk.take_name();
-            const std::string_view content = walk.take_sized();
-            Walk value(content);
-            if (!take_value(type, value, content.size()) && !type.empty()) {
-                hidden.push_back(static_cast<std::size_t>(type.data() - begin));
-            }
-            if (!value.is_at_end()) throw std::runtime_error("an attribute is longer than its type");
-        }
-    }
-    return version;
-}
-
-std::int64_t divided_up(std::int64_t a, std::int64_t b) {
-    return (a + b - 1) / b;
-}
-
-/// Checks the sizes that the part claims; returns the number of its chunks, tiles of other levels aside.
-std::int64_t check_sizes(const ExrPart& part, std::size_t file_size) {
-    const auto& window = part.header.dataWindow();
-    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-    const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-    check_image_size(width, height, kMaxImageSide);
-
-    std::int64_t pixel_bytes = 0;
-    const Imf::ChannelList& channels = part.header.channels();
-    for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
-        pixel_bytes += channel.channel().type == Imf::HALF ? 2 : 4;
-    }
-    std::int64_t chunk_width = width;
-    std::int64_t chunk_height = rows_per_chunk(part.header);
-    if (part.is_tiled) {
-        if (!part.header.hasTileDescription()) throw std::runtime_error("tiles without a description of them");
-        chunk_width = part.header.tileDescription().xSize;
-        chunk_height = part.header.tileDescription().ySize;
-        if (chunk_width < 1 || chunk_width > kMaxImageSide || chunk_height < 1 || chunk_height > kMaxImageSide) {
-            throw std::runtime_error(fmt::format("a tile's sides must be within [1, {}]", kMaxImageSide));
-        }
-    }
-    const std::int64_t most = std::max(std::int64_t{1} << 28, 1024 * static_cast<std::int64_t>(file_size));
-    if (pixel_bytes * chunk_width > most / chunk_height) {
-        throw std::runtime_error(
-            fmt::format("{} x {} pixels of {} bytes are compressed together: must be at most "
-                        "256 MiB, or 1024 times the file",
-                        chunk_width, chunk_height, pixel_bytes));
-    }
-    constexpr std::int64_t kReadBytes = 3 * sizeof(float);
-    if (part.is_tiled && width * kReadBytes > most / chunk_height) {
-        throw std::runtime_error("a row of tiles must take at most 256 MiB, or 1024 times the file");
-    }
-    return std::max(divided_up(width, chunk_width) * divided_up(height, chunk_height),
-                    std::int64_t{part.header.hasChunkCount() ? part.header.chunkCount() : 0});
+    return channel_count;
 }
 
 }  // namespace
 
-std::int64_t rows_per_chunk(const Imf::Header& header) {
-    switch (header.compression()) {
-        case Imf::NO_COMPRESSION:
-        case Imf::RLE_COMPRESSION:
-        case Imf::ZIPS_COMPRESSION:
-            return 1;
-        case Imf::ZIP_COMPRESSION:
-        case Imf::PXR24_COMPRESSION:
-            return 16;
-        case Imf::DWAB_COMPRESSION:
-            return 256;
-        default:
-            return 32;
+ExrHeader check_exr_header(BytesView bytes) {
+    constexpr std::int32_t kNumber = 0xff;
+    constexpr std::int32_t kManyParts = 0x1000;
+    constexpr std::int32_t kKnownFlags = 0x200 | 0x400 | 0x800 | kManyParts;  // tiles, long names, deep data
+    const auto* const begin = reinterpret_cast<const char*>(bytes.data());
+    Walk walk({begin, bytes.size()});
+    if (walk.take_int() != kExrMagic) throw std::runtime_error("not an EXR file");
+    ExrHeader header{walk.take_int(), {}, {}};
+    if ((header.version & kNumber) != 2 || (header.version & ~(kNumber | kKnownFlags)) != 0)
+        throw std::runtime_error("of a version of EXR that is not read");
+    if ((header.version & kManyParts) == 0) {
+        header.channel_counts.push_back(take_part(walk, walk.take_name(), begin, header.hidden));
+        return header;
     }
-}
-
-ExrHeaders read_exr_headers(BytesView bytes) {
-    ExrHeaders headers;
-    int version = check_attributes(bytes, headers.hidden);
-    MemoryInput stream(bytes, headers.hidden);
-    stream.seekg(sizeof Imf::MAGIC + sizeof version);
-    std::int64_t chunk_count = 0;
-    do {
-        Imf::Header header;
-        header.readFrom(stream, version);
-        if (header.readsNothing()) break;
-        ExrPart part{header, Imf::isNonImage(version), Imf::isTiled(version)};
-        if (header.hasType()) part.is_deep = Imf::isDeepData(header.type());
-        if (Imf::isMultiPart(version) && header.hasType()) part.is_tiled = Imf::isTiled(header.type());
-        chunk_count += check_sizes(part, bytes.size());
-        headers.parts.push_back(std::move(part));
-    } while (Imf::isMultiPart(version));
-    if (headers.parts.empty()) throw std::runtime_error("must have at least one part");
-    if (chunk_count > static_cast<std::int64_t>(bytes.size() / sizeof(std::uint64_t))) {
-        throw std::runtime_error("the file ends too early for its number of blocks");
-    }
-    return headers;
+    for (std::string_view name = walk.take_name(); !name.empty(); name = walk.take_name())
+        header.channel_counts.push_back(take_part(walk, name, begin, header.hidden));
+    return header;
 }
 
 }  // namespace raypool

@@ -1,36 +1,30 @@
-/// The headers at the front of an EXR file, looked over before OpenEXR reads pixels by them.
+/// The attributes at the front of an EXR file, looked over before OpenEXR reads them.
 ///
 /// OpenEXR reads most types of attribute without regard to the size that the file gives, reads on from wherever that
 /// leads, and reserves what it finds there as a size. So every attribute must take exactly the size that it is given.
-/// The name of a type beyond those is hidden from OpenEXR, which then skips the attribute by its size. And OpenEXR
-/// reserves the table of chunks and room for a chunk by what a header claims, so these must be in proportion to the
-/// file. Layout: https://openexr.com/en/latest/OpenEXRFileLayout.html Called by exr_codec.cpp.
+/// Layout: https://openexr.com/en/latest/OpenEXRFileLayout.html
+/// Called by exr_codec.cpp.
 #pragma once
 
-#include <OpenEXR/ImfHeader.h>
-
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/image_codecs.h"
 
 namespace raypool {
 
-struct ExrPart {
-    Imf::Header header;
-    bool is_deep;   ///< any number of values a pixel
-    bool is_tiled;  ///< in tiles, otherwise in scan lines
+inline constexpr std::int32_t kExrMagic = 20000630;
+
+struct ExrHeader {
+    std::int32_t version;                      ///< with its flags
+    std::vector<std::int64_t> channel_counts;  ///< of each part
+    std::vector<std::size_t> hidden;           ///< places in the file that OpenEXR must not see as they are
 };
 
-struct ExrHeaders {
-    std::vector<ExrPart> parts;       ///< one, if the file is not of several
-    std::vector<std::size_t> hidden;  ///< places in the file that OpenEXR must not see as they are: see MemoryInput
-};
-
-/// Throws std::runtime_error where a header is unsound, or claims
-/// more than kMaxImageSide, than kMaxImagePixels, or than a file of this size can hold.
-ExrHeaders read_exr_headers(BytesView bytes);
-
-/// Rows that the part's codec takes together.
-std::int64_t rows_per_chunk(const Imf::Header& header);
+/// Throws std::runtime_error for what is not an EXR file with sound attributes. An attribute of a type that this reader
+/// does not know takes what it says. The first letter of such a type is to be hidden: OpenEXR then passes over the
+/// attribute by its size, whereas of a type that only some versions know (idmanifest) they take more or less.
+ExrHeader check_exr_header(BytesView bytes);
 
 }  // namespace raypool

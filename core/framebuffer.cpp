@@ -19,9 +19,8 @@ constexpr double kLeastMaxRadiance = 0x1p-20;  ///< a black scene still has a st
 
 FixedPoint FixedPoint::make(std::int64_t spp, double max_radiance) {
     const int limit_bits = ceil_log2(std::max(max_radiance, kLeastMaxRadiance)) + 1;
-    const int spp_bits = ceil_log2(static_cast<double>(std::max<std::int64_t>(spp, 1)));
-    // Squares: three channels, each below 2^(2 limit_bits), times spp, stay below 2^62.
-    return {62 - limit_bits - spp_bits, std::ldexp(1.0, limit_bits), 60 - 2 * limit_bits - spp_bits};
+    const int spp_bits = ceil_log2(static_cast<double>(std::max(spp, kExtensibleSamples)));
+    return {62 - limit_bits - spp_bits, std::ldexp(1.0, limit_bits)};
 }
 
 FixedRgb SampleConverter::convert_bad(const Eigen::Vector3d& radiance) {
@@ -44,7 +43,7 @@ Framebuffer::Framebuffer(std::int64_t width, std::int64_t height, const FixedPoi
       height_(height),
       fixed_(fixed),
       sums_(static_cast<std::size_t>(3 * width * height)),
-      squares_(moments == Moments::Second ? static_cast<std::size_t>(width * height) : 0) {}
+      squares_(moments == Moments::Second ? static_cast<std::size_t>(2 * width * height) : 0) {}
 
 std::string Framebuffer::hash() const {
     const std::array<std::int64_t, 3> shape{width_, height_, fixed_.fraction_bits};

@@ -2,9 +2,11 @@
 ///
 /// Integer addition is exact and has no order, so any engine, schedule or thread count that adds the same samples makes
 /// the same bits. Not synchronised: whoever adds must own the pixel, or add atomically to sums().
-/// The step is 2^-k with k chosen so that no render can overflow: spp samples of the scene's greatest radiance fit.
-/// On request it also keeps the sum of squares of the samples of each pixel, as exact and as free of order: the second
-/// moment, from which adaptive.h estimates what error is left.
+/// The step is 2^-k with k chosen so that no render can overflow: spp samples of the scene's greatest radiance fit. It
+/// is the same for all renders of up to 65,536 samples a pixel.
+/// On request it also keeps the sum of squares of the samples of each pixel, exact and free of order too: the second
+/// moment, from which adaptive.h estimates what error is left. It has no step of its own, so that no precision is lost
+/// whatever else is in the scene.
 #pragma once
 
 #include <array>
@@ -35,20 +37,41 @@ struct SampleAudit {
 /// A sum or a sample in fixed point.
 using FixedRgb = std::array<std::int64_t, 3>;
 
+__extension__ using Int128 = __int128;
+
+/// r^2 + g^2 + b^2 of a sample in fixed point, or a sum of them: high 2^k + low, with k the fixed point's
+/// square_digit_bits(). Digits are added each by itself and without a carry, so that they can be added atomically.
+struct FixedSquare {
+    std::int64_t low = 0;
+    std::int64_t high = 0;
+
+    void add(const FixedSquare& other) {
+        low += other.low;
+        high += other.high;
+    }
+};
+
 /// How radiance becomes an integer.
 struct FixedPoint {
     int fraction_bits = 0;
     double limit = 0;  ///< radiance above which a channel is cut: at least twice max_radiance
 
+    /// Renders of up to this many samples a pixel have one step, so that one of them can be extended to any other.
+    static constexpr std::int64_t kExtensibleSamples = 65536;
+
     /// For up to `spp` samples a pixel, each channel at most max_radiance.
     static FixedPoint make(std::int64_t spp, double max_radiance);
 
-    /// The step of a sum of squares is 2^-square_bits: `spp` samples of three channels at the limit fit.
-    int square_bits = 0;
-
     bool operator==(const FixedPoint&) const = default;
     [[nodiscard]] double scale() const { return std::ldexp(1.0, fraction_bits); }
-    [[nodiscard]] double square_scale() const { return std::ldexp(1.0, square_bits); }
+    /// The bits of a square's low digit. With 2^s samples at most, no channel of a sample is above 2^(62 - s), and no
+    /// square above 3 * 2^(124 - 2 s). With 63 - s bits in the low digit, the sum of the low digits is below
+    /// 2^s * 2^(63 - s) = 2^63, and that of the high ones at most 2^s * 3 * 2^(124 - 2 s) / 2^(63 - s) = 3 * 2^61.
+    [[nodiscard]] int square_digit_bits() const { return 1 + std::ilogb(limit) + fraction_bits; }
+    /// A sum of squares as one number, in units of the squared step; below 2^(126 - s).
+    [[nodiscard]] Int128 whole(const FixedSquare& square) const {
+        return Int128{square.high} * (Int128{1} << square_digit_bits()) + square.low;
+    }
 };
 
 /// Whether a framebuffer keeps second moments.
@@ -60,7 +83,7 @@ class SampleConverter {
     explicit SampleConverter(const FixedPoint& fixed)
         : scale_(fixed.scale()),
           limit_(fixed.limit),
-          square_scale_(std::ldexp(1.0, fixed.square_bits - 2 * fixed.fraction_bits)) {}
+          square_digit_bits_(static_cast<unsigned>(fixed.square_digit_bits())) {}
 
     /// Rounds to nearest. Zero for a sample that is not finite.
     template <class Scalar>
@@ -74,12 +97,12 @@ class SampleConverter {
         }
         return fixed;
     }
-    /// r^2 + g^2 + b^2 of a whole sample, for the sum of squares. A function of the integers, and so the same for all.
-    [[nodiscard]] std::int64_t square(const FixedRgb& sample) const {
-        const double r = static_cast<double>(sample[0]);
-        const double g = static_cast<double>(sample[1]);
-        const double b = static_cast<double>(sample[2]);
-        return std::llrint((r * r + g * g + b * b) * square_scale_);
+    /// r^2 + g^2 + b^2 of a whole sample, for the sum of squares: exact.
+    [[nodiscard]] FixedSquare square(const FixedRgb& sample) const {
+        const Int128 square =
+            Int128{sample[0]} * sample[0] + Int128{sample[1]} * sample[1] + Int128{sample[2]} * sample[2];
+        return {static_cast<std::int64_t>(square) & ((std::int64_t{1} << square_digit_bits_) - 1),
+                static_cast<std::int64_t>(square >> square_digit_bits_)};
     }
     [[nodiscard]] const SampleAudit& audit() const { return audit_; }
 
@@ -88,7 +111,7 @@ class SampleConverter {
 
     double scale_;
     double limit_;
-    double square_scale_;
+    unsigned square_digit_bits_;
     SampleAudit audit_;
 };
 
@@ -104,9 +127,13 @@ class Framebuffer {
         for (int i = 0; i < 3; ++i) sums_[static_cast<std::size_t>(3 * pixel + i)] += sample[i];
     }
     /// Only where it keeps second moments.
-    void add_square(std::int64_t pixel, std::int64_t square) { squares_[static_cast<std::size_t>(pixel)] += square; }
+    void add_square(std::int64_t pixel, const FixedSquare& square) {
+        squares_[static_cast<std::size_t>(2 * pixel)] += square.low;
+        squares_[static_cast<std::size_t>(2 * pixel + 1)] += square.high;
+    }
+    [[nodiscard]] FixedSquare square(std::size_t pixel) const { return {squares_[2 * pixel], squares_[2 * pixel + 1]}; }
     [[nodiscard]] bool has_squares() const { return !squares_.empty(); }
-    /// One a pixel; empty without second moments.
+    /// Two a pixel, its low digit and its high one; empty without second moments.
     [[nodiscard]] std::span<std::int64_t> squares() { return squares_; }
     [[nodiscard]] std::span<const std::int64_t> squares() const { return squares_; }
     [[nodiscard]] std::span<std::int64_t> sums() { return sums_; }

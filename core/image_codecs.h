@@ -6,8 +6,6 @@
 /// against the number of bytes, before memory is taken for the pixels.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -30,10 +28,17 @@ ImageContents decode_png(BytesView bytes, std::int64_t max_side, std::int64_t ma
 
 Bytes encode_exr(const Image& image, const ImageAttributes& attributes);
 ImageContents decode_exr(BytesView bytes);
-ImageAttributes decode_exr_attributes(BytesView bytes);
 
 Bytes encode_pfm(const Image& image);
 ImageContents decode_pfm(BytesView bytes);
+
+/// An image that is shown whole.
+inline ImageContents whole(Image image) {
+    ImageContents contents;
+    contents.data_window = contents.display_window = {0, image.width, 0, image.height};
+    contents.image = std::move(image);
+    return contents;
+}
 
 inline void check_image_size(std::int64_t width, std::int64_t height, std::int64_t max_side,
                              std::int64_t max_pixels = kMaxImagePixels) {
@@ -42,21 +47,6 @@ inline void check_image_size(std::int64_t width, std::int64_t height, std::int64
             fmt::format("width and height must be within [1, {}] and at most {} pixels, got {} x {}", max_side,
                         max_pixels, width, height));
     }
-}
-
-/// `image` as all that its file shows; its data window is its display window.
-inline ImageContents contents_of(Image image) {
-    ImageContents contents;
-    contents.data_window = contents.display_window = {0, 0, image.width, image.height};
-    contents.image = std::move(image);
-    return contents;
-}
-
-/// Whether they are those of sRGB, as far as the three digits go with which files give them.
-inline bool are_srgb(const Chromaticities& chromaticities) {
-    constexpr Chromaticities kSrgb{0.64F, 0.33F, 0.3F, 0.6F, 0.15F, 0.06F, 0.3127F, 0.329F};
-    return std::equal(kSrgb.begin(), kSrgb.end(), chromaticities.begin(),
-                      [](float a, float b) { return std::abs(a - b) < 1e-3F; });
 }
 
 }  // namespace raypool

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/image_codecs.h"
 #include "core/output_file.h"
+#include "core/text.h"
 
 namespace raypool {
 namespace {
@@ -68,22 +69,20 @@ void write_image(const fs::path& path, const Image& image, const ImageAttributes
     RAYPOOL_CHECK(image.width > 0 && image.height > 0 && std::ssize(image.rgb) == image.width * image.height * 3,
                   "an image has three values for each of its pixels");
     const ImageFormat format = image_format(path);
+    ImageAttributes texts;
+    for (const auto& [name, text] : attributes) texts.emplace(name, valid_utf8(text));
     const Bytes bytes = naming(path, "write", [&] {
         switch (format) {
             case ImageFormat::Png:
-                return encode_png(image, attributes);
+                return encode_png(image, texts);
             case ImageFormat::Exr:
-                return encode_exr(image, attributes);
+                return encode_exr(image, texts);
             case ImageFormat::Pfm:
                 break;
         }
         return encode_pfm(image);
     });
     write_whole(path, bytes);
-}
-
-Image read_image(const fs::path& path) {
-    return read_image_contents(path).image;
 }
 
 ImageContents read_image_contents(const fs::path& path) {
@@ -102,8 +101,8 @@ ImageContents read_image_contents(const fs::path& path) {
     });
 }
 
-ImageAttributes read_exr_attributes(const fs::path& path) {
-    return naming(path, "read", [&] { return decode_exr_attributes(read_bytes(path, kMaxImageBytes)); });
+Image read_image(const fs::path& path) {
+    return read_image_contents(path).image;
 }
 
 std::shared_ptr<const ImageTexels> read_texture(const fs::path& path, std::int64_t max_texels) {

@@ -19,8 +19,9 @@ struct Methods {
         return raypool::sphere_distance<Real>(origin, direction, center, radius, is_leaving);
     }
     template <class Real>
-    RAYPOOL_INLINE static Mask<Real> is_odd_cell(const Vec3<Real>& p, const Split<Real>& scale) {
-        return raypool::is_odd_cell<Real>(p, scale);
+    RAYPOOL_INLINE static Mask<Real> is_odd_cell(const Vec3<Real>& p, const Vec3<Real>& outward,
+                                                 const Split<Real>& scale) {
+        return raypool::is_odd_cell<Real>(p, outward, scale);
     }
 };
 

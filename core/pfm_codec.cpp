@@ -97,7 +97,7 @@ ImageContents decode_pfm(BytesView bytes) {
             value[i] = scale > 0 ? byte_swapped(stored) : stored;
         }
     }
-    return contents_of(std::move(image));
+    return whole(std::move(image));
 }
 
 }  // namespace raypool

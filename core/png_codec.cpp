@@ -11,7 +11,6 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -101,21 +100,17 @@ bool read_rows(PngReader& reader, png_bytepp rows) {
     return true;
 }
 
-/// Whether pixels have an alpha: a channel, or one that a colour or an entry of the palette stands for.
-bool has_alpha(const PngReader& reader) {
-    return (png_get_color_type(reader.png, reader.info) & PNG_COLOR_MASK_ALPHA) != 0 ||
-           png_get_valid(reader.png, reader.info, PNG_INFO_tRNS) != 0;
-}
-
-std::optional<Chromaticities> chromaticities_of(const PngReader& reader) {
-    std::array<double, 8> xy{};  // white first
-    if (png_get_cHRM(reader.png, reader.info, xy.data(), &xy[1], &xy[2], &xy[3], &xy[4], &xy[5], &xy[6], &xy[7]) == 0)
-        return {};
-    std::rotate(xy.begin(), xy.begin() + 2, xy.end());
-    Chromaticities chromaticities;
-    std::transform(xy.begin(), xy.end(), chromaticities.begin(), [](double x) { return static_cast<float>(x); });
-    if (are_srgb(chromaticities)) return {};
-    return chromaticities;
+/// The chromaticities of a cHRM chunk, where they are not those of sRGB.
+std::string primaries_of(const PngReader& reader) {
+    constexpr std::array<double, 8> kSrgb{0.3127, 0.329, 0.64, 0.33, 0.3, 0.6, 0.15, 0.06};  // white first
+    std::array<double, 8> xy = kSrgb;
+    png_get_cHRM(reader.png, reader.info, xy.data(), &xy[1], &xy[2], &xy[3], &xy[4], &xy[5], &xy[6], &xy[7]);
+    const bool is_srgb = std::equal(xy.begin(), xy.end(), kSrgb.begin(), [](double a, double b) {
+        return std::abs(a - b) < 1e-3;  // files give three digits
+    });
+    if (is_srgb) return "sRGB";
+    return fmt::format("red {:g} {:g}, green {:g} {:g}, blue {:g} {:g}, white {:g} {:g}", xy[2], xy[3], xy[4], xy[5],
+                       xy[6], xy[7], xy[0], xy[1]);
 }
 
 /// Linear light for every code of `bit_depth` bits.
@@ -213,10 +208,13 @@ ImageContents decode_png(BytesView bytes, std::int64_t max_side, std::int64_t ma
         width * png_get_channels(reader.png, reader.info) * png_get_bit_depth(reader.png, reader.info);
     if (row_bits / 8 * height / 1032 > std::ssize(bytes)) throw std::runtime_error("the file ends too early");
 
-    ImageContents contents;
-    if (has_alpha(reader)) contents.unread_channels.emplace_back("A");
-    contents.chromaticities = chromaticities_of(reader);
-    contents.data_window = contents.display_window = {0, 0, width, height};
+    std::vector<std::string> left_out;
+    if ((png_get_color_type(reader.png, reader.info) & PNG_COLOR_MASK_ALPHA) != 0 ||
+        png_get_valid(reader.png, reader.info, PNG_INFO_tRNS) != 0)
+        left_out.emplace_back("alpha");
+    if (png_get_valid(reader.png, reader.info, PNG_INFO_iCCP) != 0) left_out.emplace_back("a colour profile");
+
+    std::string primaries = primaries_of(reader);
 
     check(convert_to_rgb(reader));
     const int bit_depth = png_get_bit_depth(reader.png, reader.info);
@@ -229,11 +227,14 @@ ImageContents decode_png(BytesView bytes, std::int64_t max_side, std::int64_t ma
     check(read_rows(reader, rows.data()));
 
     const std::vector<float> linear = decoding_table(reader, bit_depth);
-    contents.image = Image(width, height);
+    Image image(width, height);
     for (std::size_t i = 0; i < value_count; ++i) {
         const int code = bit_depth == 8 ? codes[i] : codes[2 * i] << 8 | codes[2 * i + 1];
-        contents.image.rgb[i] = linear[static_cast<std::size_t>(code)];
+        image.rgb[i] = linear[static_cast<std::size_t>(code)];
     }
+    ImageContents contents = whole(std::move(image));
+    contents.left_out = std::move(left_out);
+    contents.primaries = std::move(primaries);
     return contents;
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -78,7 +79,7 @@ struct Sphere {
 struct Quad {
     Vector3d corner{0, 0, 0};
     Vector3d edge_u{1, 0, 0};
-    Vector3d edge_v{0, 1, 0};  ///< not parallel to edge_u
+    Vector3d edge_v{0, 1, 0};  ///< not parallel to edge_u; the outward side is that of edge_u x edge_v
     std::int32_t material_id = 0;
 };
 
@@ -87,11 +88,13 @@ struct Plane {
     Vector3d point{0, 0, 0};
     Vector3d normal{0, 1, 0};  ///< any length > 0
     std::int32_t material_id = 0;
+    /// How many of the scene's quads are listed before it, by default all: of shapes that coincide the first counts.
+    std::int64_t quads_before = std::numeric_limits<std::int64_t>::max();
 };
 
 /// A primitive's id counts through all shapes in this order: spheres, quads, planes.
 struct Scene {
-    std::string name;          ///< file name without folder and extension
+    std::string name;          ///< file name without folder and extension, as UTF-8
     std::string description;   ///< what the scene is for and where it comes from; not empty
     std::int64_t width = 400;  ///< default image size in pixels, each in [1, 65536]
     std::int64_t height = 225;

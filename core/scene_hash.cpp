@@ -61,8 +61,8 @@ class Hasher {
         add_all(corner, edge_u, edge_v, material_id);
     }
     void add(const Plane& plane) {
-        const auto& [point, normal, material_id] = plane;
-        add_all(point, normal, material_id);
+        const auto& [point, normal, material_id, quads_before] = plane;
+        add_all(point, normal, material_id, quads_before);
     }
     template <class T>
     void add(const std::vector<T>& elements) {

@@ -14,6 +14,7 @@
 #include "core/image_file.h"
 #include "core/json_cursor.h"
 #include "core/json_parser.h"
+#include "core/text.h"
 
 namespace raypool {
 namespace {
@@ -260,6 +261,7 @@ class SceneReader {
             plane.point = position(object.required("point"));
             plane.normal = direction(object.required("normal"));
             plane.material_id = material_id(object.required("material"));
+            plane.quads_before = std::ssize(scene_.quads);
             scene_.planes.push_back(plane);
         }
         object.refuse_unknown_keys();
@@ -276,7 +278,7 @@ class SceneReader {
 Scene parse_scene(std::string_view json_text, const std::string& name_for_messages, const fs::path& texture_folder) {
     const nlohmann::json document = parse_json(json_text, name_for_messages);
     Scene scene = SceneReader(texture_folder).read(JsonCursor(document, name_for_messages));
-    scene.name = fs::path(name_for_messages).stem().string();
+    scene.name = valid_utf8(fs::path(name_for_messages).stem().string());
     return scene;
 }
 

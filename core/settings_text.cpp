@@ -1,7 +1,5 @@
 #include "core/settings_text.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -28,7 +26,7 @@ std::optional<std::int64_t> parse_integer(std::string_view text, std::int64_t le
     return value;
 }
 
-LoopSchedule parse_schedule(std::string_view text) {
+LoopSchedule parse_schedule(std::string_view text, std::string_view source) {
     const std::size_t comma = text.find(',');
     const std::string_view name = text.substr(0, comma);
     for (int i = 0; i < 3; ++i) {
@@ -42,7 +40,7 @@ LoopSchedule parse_schedule(std::string_view text) {
         }
     }
     throw InputError(fmt::format(
-        "--schedule: must be static, dynamic or guided, with an optional chunk >= 1 as in dynamic,4, got {}", text));
+        "{}: must be static, dynamic or guided, with an optional chunk >= 1 as in dynamic,4, got {}", source, text));
 }
 
 std::string to_string(const LoopSchedule& schedule) {
@@ -83,19 +81,12 @@ std::string to_string(Sampler sampler) {
 }
 
 LoopSchedule default_schedule() {
-    if (std::getenv("OMP_SCHEDULE") == nullptr) return {LoopSchedule::Kind::Dynamic, 0};
-    omp_sched_t kind;
-    int chunk = 0;
-    omp_get_schedule(&kind, &chunk);
-    constexpr unsigned kMonotonic = 0x80000000U;  // a modifier that OpenMP may add to the kind
-    switch (static_cast<unsigned>(kind) & ~kMonotonic) {
-        case omp_sched_dynamic:
-            return {LoopSchedule::Kind::Dynamic, chunk};
-        case omp_sched_guided:
-            return {LoopSchedule::Kind::Guided, chunk};
-        default:
-            return {LoopSchedule::Kind::Static, std::max(chunk, 0)};  // static and auto
-    }
+    const char* said = std::getenv("OMP_SCHEDULE");
+    if (said == nullptr) return {LoopSchedule::Kind::Dynamic, 0};
+    std::string text;
+    for (const char c : std::string_view(said))
+        if (c != ' ' && c != '\t') text += 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return parse_schedule(text, "OMP_SCHEDULE");
 }
 
 void set_width(Scene& scene, std::int64_t width) {

@@ -11,8 +11,8 @@
 
 namespace raypool {
 
-/// static, dynamic or guided, with an optional chunk: "dynamic,4".
-LoopSchedule parse_schedule(std::string_view text);
+/// static, dynamic or guided, with an optional chunk: "dynamic,4". A refusal names `source`, where the text is from.
+LoopSchedule parse_schedule(std::string_view text, std::string_view source = "--schedule");
 std::string to_string(const LoopSchedule& schedule);
 
 /// pixel, line or tile:N.
@@ -23,7 +23,9 @@ std::string to_string(const Grain& grain);
 Sampler parse_sampler(std::string_view text);
 std::string to_string(Sampler sampler);
 
-/// What OMP_SCHEDULE says, and dynamic where it says nothing: equal lines are not equal work.
+/// What OMP_SCHEDULE says, in upper or lower case and with blanks as OpenMP has it, and dynamic where there is none:
+/// equal lines are not equal work. What --schedule refuses is refused: of `auto` and of the modifiers monotonic: and
+/// nonmonotonic: a record could not say what they came to.
 LoopSchedule default_schedule();
 
 /// The whole text as a number in [least, most], or nothing.

@@ -29,17 +29,18 @@ struct SurfacePoint {
 };
 
 /// `row` is the primitive's SurfaceRow, transposed. A hit on a sphere is put back onto the sphere where the distance
-/// travelled, and with it the rounding error, is larger than the radius; on a large sphere that would do harm.
+/// travelled, and with it the rounding error, is larger than the radius; on a large sphere that would do harm. A hit on
+/// a quad or plane is put back always: its error is then a few ulps of its own coordinates, whatever the ray's length,
+/// and none across a plane that lies across an axis.
 template <SceneNeeds needs, class Real>
 RAYPOOL_INLINE SurfacePoint<Real> surface_point(const Ray<Real>& ray, const Real& t, const Real* row) {
     using Row = SurfaceRow<ScalarOf<Real>>;
     const Vec3<Real> p = along<Real>(ray.origin, t, ray.direction);
     const Real radius = row[Row::kRadius];
     Vec3<Real> center = vec3<Real>(row[Row::kCenter], row[Row::kCenter + 1], row[Row::kCenter + 2]);
-    const Vec3<Real> stored = center;  // of a quad or plane this is the normal
-    if constexpr (needs.motion)
-        center = center_at<Real>(center, vec3<Real>(row[Row::kMotion], row[Row::kMotion + 1], row[Row::kMotion + 2]),
-                                 ray.time);
+    const Vec3<Real> stored = center;  // of a quad or plane this is the normal, and the motion is a point of it
+    const Vec3<Real> motion = vec3<Real>(row[Row::kMotion], row[Row::kMotion + 1], row[Row::kMotion + 2]);
+    if constexpr (needs.motion) center = center_at<Real>(center, motion, ray.time);
 
     SurfacePoint<Real> point;
     point.outward = unit<Real>(vec3<Real>(p[0] - center[0], p[1] - center[1], p[2] - center[2]));
@@ -47,7 +48,8 @@ RAYPOOL_INLINE SurfacePoint<Real> surface_point(const Ray<Real>& ray, const Real
     if constexpr (needs.flat) {
         const Mask<Real> is_flat = radius == Real(0);
         point.outward = select<Real>(is_flat, stored, point.outward);
-        point.position = select<Real>(is_flat, p, point.position);
+        const Real height = dot<Real>(vec3<Real>(p[0] - motion[0], p[1] - motion[1], p[2] - motion[2]), stored);
+        point.position = select<Real>(is_flat, along<Real>(p, -height, stored), point.position);
     }
     point.is_front = dot<Real>(ray.direction, point.outward) < Real(0);
     point.normal = select<Real>(point.is_front, point.outward, -point.outward);
@@ -97,10 +99,19 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const CompiledScene<ScalarOf<Real>>& sc
         const Split<Real> scale{texture[Tex::kScaleHigh], texture[Tex::kScaleLow]};
         const Vec3<Real> odd = vec3<Real>(texture[Tex::kOdd], texture[Tex::kOdd + 1], texture[Tex::kOdd + 2]);
         Vec3<Real> at;
-        for (int i = 0; i < 3; ++i) at[i] = point.position[i] + texture[Tex::kOffset + i];
-        if constexpr (needs.uv) at = select<Real>(is_checker_uv, vec3<Real>(uv[0], uv[1], Real(0)), at);
+        Vec3<Real> outward;
+        for (int i = 0; i < 3; ++i) {
+            const Real offset = texture[Tex::kOffset + i];
+            at[i] = point.position[i] + offset;
+            outward[i] = outward_part<Real>(point.position[i], offset, scale, point.outward[i]);
+        }
+        if constexpr (needs.uv) {
+            const Vec3<Real> zero = vec3<Real>(Real(0), Real(0), Real(0));
+            at = select<Real>(is_checker_uv, vec3<Real>(uv[0], uv[1], Real(0)), at);
+            outward = select<Real>(is_checker_uv, zero, outward);
+        }
         const Mask<Real> is_odd =
-            (is_checker_3d || is_checker_uv) && Methods<needs.variant>::template is_odd_cell<Real>(at, scale);
+            (is_checker_3d || is_checker_uv) && Methods<needs.variant>::template is_odd_cell<Real>(at, outward, scale);
         colour = select<Real>(is_odd, odd, colour);
     }
     if constexpr (needs.uv) {
@@ -147,6 +158,7 @@ enum class Splitting : bool { Off, On };
 template <class Real>
 struct Scattered {
     Vec3<Real> origin;
+    Int<Real> leaving_id;  ///< what the path leaves: SurfaceRow::kGroup
     Vec3<Real> direction;
     Vec3<Real> throughput;  ///< where is_emitter: the radiance that the path brings home
     Mask<Real> is_alive;    ///< the path goes on
@@ -180,6 +192,8 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
 
     Scattered<Real> out;
     out.origin = point.position;
+    out.leaving_id = primitive_id;
+    if constexpr (needs.flat) out.leaving_id = to_int<Real>(row[Row::kGroup]);
     out.is_emitter = needs.emissive ? is_material(Material::Kind::Emissive) : Mask<Real>(false);
     const Mask<Real> is_glass = needs.dielectric ? is_material(Material::Kind::Dielectric) : Mask<Real>(false);
     const Mask<Real> is_metal = needs.metal ? is_material(Material::Kind::Metal) : Mask<Real>(false);

@@ -3,7 +3,8 @@
 /// Any mix of scalar and wide is possible: one ray against a register of spheres, a register of rays against one, or
 /// one against one; what is single is broadcast. A distance returned is > 0, or infinity for a miss. There is no
 /// least distance: a ray that starts on a primitive is told so (`is_leaving`) and gets the exact second root of a
-/// sphere, and no hit on the plane or quad it left. So nothing leaks through small things, and nothing hits itself.
+/// sphere, and no hit on the plane or quad it left. Shapes that are one surface to rounding count as one, which is
+/// decided before rays are traced (coincidence.h). So nothing leaks through small things, and no surface hits itself.
 ///
 /// Which hit is the closest must not depend on the order in which a tree is walked. Two rules see to that. First,
 /// box distances are monotonic: a box inside another is entered no earlier, to the last bit, since both use the same
@@ -144,12 +145,13 @@ RAYPOOL_INLINE std::array<Real, 2> plane_coordinates(const Vec3<Real>& p, const 
 template <class Scalar>
 inline constexpr Scalar kEdgeSlack = 8 * std::numeric_limits<Scalar>::epsilon();
 
-/// Distance to the parallelogram where both coordinates are in [0, 1], or beyond by kEdgeSlack.
+/// Distance to the parallelogram where both coordinates are in [0, 1], or beyond by kEdgeSlack. Its plane is the one
+/// through `point`, its coordinates are measured from `corner`.
 template <class Real>
-RAYPOOL_INLINE Real quad_distance(const Vec3<Real>& origin, const Vec3<Real>& direction, const Vec3<Real>& corner,
-                                  const Vec3<Real>& normal, const Vec3<Real>& dual_u, const Vec3<Real>& dual_v,
-                                  const Mask<Real>& is_leaving) {
-    const Real t = plane_distance<Real>(origin, direction, corner, normal, is_leaving);
+RAYPOOL_INLINE Real quad_distance(const Vec3<Real>& origin, const Vec3<Real>& direction, const Vec3<Real>& point,
+                                  const Vec3<Real>& normal, const Vec3<Real>& corner, const Vec3<Real>& dual_u,
+                                  const Vec3<Real>& dual_v, const Mask<Real>& is_leaving) {
+    const Real t = plane_distance<Real>(origin, direction, point, normal, is_leaving);
     const Mask<Real> is_finite = t < Real(kInfinity<Real>);
     if (none(is_finite)) return t;
     const auto [u, v] = plane_coordinates<Real>(along<Real>(origin, t, direction), corner, dual_u, dual_v);

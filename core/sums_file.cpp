@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -14,9 +15,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/json_parser.h"
 #include "core/output_file.h"
-#include "core/settings_text.h"
 
 namespace raypool {
 
@@ -25,7 +26,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kFormat = "raypool sums";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::size_t kChecksumLength = 16;
 constexpr std::size_t kMostHeaderBytes = 1 << 20;
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 32;
@@ -44,12 +45,12 @@ json header_of(const RenderSums& sums) {
     return {{"format", kFormat},
             {"version", kVersion},
             {"key", key},
+            {"spp", sums.spp},
             {"ranges", ranges},
             {"rounds", sums.rounds},
             {"width", framebuffer.width()},
             {"height", framebuffer.height()},
             {"fraction_bits", fixed.fraction_bits},
-            {"square_bits", fixed.square_bits},
             {"limit_bits", std::ilogb(fixed.limit)},
             {"has_squares", framebuffer.has_squares()},
             {"has_counts", !sums.sample_counts.empty()}};
@@ -117,14 +118,14 @@ RenderSums parsed(const json& header, std::string_view payload) {
     const bool has_squares = header.at("has_squares").get<bool>();
     const bool has_counts = header.at("has_counts").get<bool>();
     const auto pixels = static_cast<std::size_t>(width * height);
-    const std::size_t bytes = pixels * ((has_squares ? 4 : 3) * sizeof(std::int64_t) + (has_counts ? 4 : 0));
+    const std::size_t bytes = pixels * ((has_squares ? 5 : 3) * sizeof(std::int64_t) + (has_counts ? 4 : 0));
     if (payload.size() != bytes)
         throw InputError(fmt::format("{} bytes of sums in place of {}", payload.size(), bytes));
 
     const FixedPoint fixed{static_cast<int>(within("fraction_bits", -1100, 1100)),
-                           std::ldexp(1.0, static_cast<int>(within("limit_bits", -1000, 1000))),
-                           static_cast<int>(within("square_bits", -2200, 2200))};
+                           std::ldexp(1.0, static_cast<int>(within("limit_bits", -1000, 1000)))};
     RenderSums sums{{},
+                    within("spp", 1, std::numeric_limits<std::int32_t>::max()),
                     {},
                     std::vector<std::int32_t>(has_counts ? pixels : 0),
                     static_cast<int>(within("rounds", 0, 1 << 30)),
@@ -132,8 +133,9 @@ RenderSums parsed(const json& header, std::string_view payload) {
     for (const json& pair : header.at("key")) sums.key.emplace_back(printable(pair.at(0)), printable(pair.at(1)));
     for (const json& pair : header.at("ranges")) {
         const SampleRange range{whole(pair.at(0)), whole(pair.at(1))};
-        if (range.first <= (sums.ranges.empty() ? -1 : sums.ranges.back().end) || range.end <= range.first)
-            throw InputError("its ranges of samples do not rise or are not apart");
+        if (range.first <= (sums.ranges.empty() ? -1 : sums.ranges.back().end) || range.end <= range.first ||
+            range.end > sums.spp)
+            throw InputError("its ranges of samples do not rise, are not apart or go beyond spp");
         sums.ranges.push_back(range);
     }
     take(payload, sums.framebuffer.sums());
@@ -142,6 +144,11 @@ RenderSums parsed(const json& header, std::string_view payload) {
     if (std::any_of(sums.sample_counts.begin(), sums.sample_counts.end(), [](std::int32_t count) { return count < 0; }))
         throw InputError("a pixel has fewer than no samples");
     return sums;
+}
+
+/// That have this step.
+double most_samples(const FixedPoint& fixed) {
+    return std::ldexp(1.0, 62 - std::ilogb(fixed.limit) - fixed.fraction_bits);
 }
 
 }  // namespace
@@ -155,22 +162,20 @@ std::string difference(const ImageKey& found, const ImageKey& wanted) {
     return found.size() == wanted.size() ? "" : "another number of settings";
 }
 
-std::int64_t whole_number(const ImageKey& key, std::string_view name, std::int64_t least, std::int64_t most) {
-    for (const auto& [own_name, value] : key)
-        if (own_name == name)
-            if (const auto number = parse_integer(value, least, most)) return *number;
-    throw InputError(fmt::format("its {} is no whole number from {} to {}", name, least, most));
-}
-
 void check_same_render(const RenderSums& found, const RenderSums& wanted) {
     if (const std::string differs = difference(found.key, wanted.key); !differs.empty())
         throw InputError(fmt::format("of a render with {}", differs));
     const Framebuffer& a = found.framebuffer;
     const Framebuffer& b = wanted.framebuffer;
     const auto is_adaptive = [](const RenderSums& sums) { return sums.framebuffer.has_squares(); };
-    if (a.width() != b.width() || a.height() != b.height() || a.fixed_point() != b.fixed_point() ||
+    if (a.width() != b.width() || a.height() != b.height() || a.fixed_point().limit != b.fixed_point().limit ||
         is_adaptive(found) != is_adaptive(wanted) || (!is_adaptive(found) && !found.sample_counts.empty()))
         throw InputError("its sums are not of the render that it says");
+    if (a.fixed_point() != b.fixed_point())
+        throw InputError(fmt::format(
+            "its sums have a step for up to {:.0f} samples a pixel, and --spp {} needs that for {:.0f}: begin "
+            "anew with as many as there shall be",
+            most_samples(a.fixed_point()), wanted.spp, most_samples(b.fixed_point())));
 }
 
 std::int64_t RenderSums::sample_count() const {
@@ -210,7 +215,7 @@ std::vector<SampleRange> gaps(const std::vector<SampleRange>& ranges, std::int64
 }
 
 void write_sums(const std::filesystem::path& path, const RenderSums& sums) {
-    std::string text = header_of(sums).dump() + "\n";
+    std::string text = json_text(header_of(sums), JsonLayout::OneLine) + "\n";
     append<std::int64_t>(text, sums.framebuffer.sums());
     append<std::int64_t>(text, sums.framebuffer.squares());
     append<std::int32_t>(text, sums.sample_counts);

@@ -4,8 +4,12 @@
 /// `merge` read it. Integer sums add up exactly, so a render that was interrupted, split or merged ends in the bits of
 /// one that was not.
 ///
+/// The step of the sums is the same for all numbers of samples up to FixedPoint::kExtensibleSamples, and above by
+/// powers of two: so a render can be extended to more samples, or its parts planned with different ones, and end in the
+/// bits of one render of them all.
+///
 /// A file is a line of JSON, the sums, and 16 hexadecimal digits over all before them (XXH3). It appears whole or not
-/// at all (output_file.h). A file that is short, long, damaged, or of a later version is refused by name (InputError);
+/// at all (output_file.h). A file that is short, long, damaged, or of another version is refused by name (InputError);
 /// no more is allocated than its own size calls for.
 #pragma once
 
@@ -27,17 +31,15 @@ struct SampleRange {
     bool operator==(const SampleRange&) const = default;
 };
 
-/// Everything that fixes the image, by name: two renders with the same key add up, others must not.
+/// Everything that fixes the samples, by name: two renders with the same key add up, others must not.
 using ImageKey = std::vector<std::pair<std::string, std::string>>;
 
 /// The first thing in which two keys differ, "depth 50, not 20"; empty where they agree.
 std::string difference(const ImageKey& found, const ImageKey& wanted);
 
-/// The value of a whole number in a key; InputError where it is none, or not in [least, most].
-std::int64_t whole_number(const ImageKey& key, std::string_view name, std::int64_t least, std::int64_t most);
-
 struct RenderSums {
     ImageKey key;
+    std::int64_t spp;                 ///< samples a pixel that the whole shall have, at most
     std::vector<SampleRange> ranges;  ///< rising and apart: those that touch are one. Empty for an adaptive render
     std::vector<std::int32_t> sample_counts;  ///< of an adaptive render, by pixel
     int rounds = 0;                           ///< of an adaptive render
@@ -46,8 +48,8 @@ struct RenderSums {
     [[nodiscard]] std::int64_t sample_count() const;
 };
 
-/// Throws InputError, saying what differs, unless the sums of both can be added up: one key, size and fixed point, and
-/// both adaptive or neither. A file is not believed to have what its key says.
+/// Throws InputError, saying what differs, unless the sums of both can be added up: one key, size and step, and both
+/// adaptive or neither. A file is not believed to have what its key says.
 void check_same_render(const RenderSums& found, const RenderSums& wanted);
 
 /// `ranges` with one more; throws InputError where samples would be there twice.

@@ -15,22 +15,33 @@ struct Split {
     Real low;
 };
 
-/// Whether the whole number below x * scale is odd, as 0 or 1, for any |x * scale| < 2^47 in float: the product's
-/// rounding error is carried along, so the answer does not degrade with distance as floor(x * scale) does.
+/// How far, in cells along an axis, the cell of a surface is looked up on the surface's outward side, so that a surface
+/// that lies in a boundary of cells takes the cell before it, not one of two as rounding has it. More than the rounding
+/// of a position put back onto a surface and of offset and sum, 4 roundoffs of |p| + |offset| in all; and a part of a
+/// cell, for surfaces that are off the boundary by the rounding of their own normal.
 template <class Real>
-RAYPOOL_INLINE Real cell_parity(const Real& x, const Split<Real>& scale) {
+RAYPOOL_INLINE Real outward_part(const Real& p, const Real& offset, const Split<Real>& scale, const Real& outward) {
+    constexpr ScalarOf<Real> kPart = 4 * std::numeric_limits<ScalarOf<Real>>::epsilon();
+    return mad<Real>(abs(p) + abs(offset), scale.high, Real(1)) * (outward * Real(kPart));
+}
+
+/// Whether the whole number below x * scale + part is odd, as 0 or 1, for any |x * scale| < 2^47 in float: the
+/// product's rounding error is carried along, so the answer does not degrade with distance as floor(x * scale) does.
+template <class Real>
+RAYPOOL_INLINE Real cell_parity(const Real& x, const Split<Real>& scale, const Real& part = Real(0)) {
     const Real high = x * scale.high;
     const Real low = mad<Real>(x, scale.low, mad<Real>(x, scale.high, -high));
     const Real cell = floor(high);
-    const Real carry = floor((high - cell) + low);
+    const Real carry = floor((high - cell) + (low + part));
     const auto parity = [](const Real& a) { return nmad<Real>(Real(2), floor(a * Real(0.5F)), a); };
     return parity(parity(cell) + parity(carry));
 }
 
-/// True where the cell of a 3-D checker has an odd sum of indices.
+/// True where the cell of a 3-D checker at p, moved by outward_part(), has an odd sum of indices.
 template <class Real>
-RAYPOOL_INLINE Mask<Real> is_odd_cell(const Vec3<Real>& p, const Split<Real>& scale) {
-    const Real sum = cell_parity<Real>(p[0], scale) + cell_parity<Real>(p[1], scale) + cell_parity<Real>(p[2], scale);
+RAYPOOL_INLINE Mask<Real> is_odd_cell(const Vec3<Real>& p, const Vec3<Real>& outward, const Split<Real>& scale) {
+    Real sum = cell_parity<Real>(p[0], scale, outward[0]);
+    for (int i = 1; i < 3; ++i) sum = sum + cell_parity<Real>(p[i], scale, outward[i]);
     return sum == Real(1) || sum == Real(3);
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/json_file.h"
 #include "core/output_file.h"
 
 namespace raypool {
@@ -74,7 +75,8 @@ void write_trace(const std::filesystem::path& path, const Trace& trace,
     nlohmann::json other = about;
     other["events_dropped"] = trace.dropped_count();
     other["most_events_of_a_thread"] = Trace::kMostEvents;
-    std::string text = "{\"displayTimeUnit\":\"ms\",\n\"otherData\":" + other.dump() + ",\n\"traceEvents\":[\n";
+    std::string text = "{\"displayTimeUnit\":\"ms\",\n\"otherData\":" + json_text(other, JsonLayout::OneLine) +
+                       ",\n\"traceEvents\":[\n";
     append_name(text, "process_name", 0, "raypool");
     for (std::size_t thread = 0; thread < trace.lanes().size(); ++thread) {
         text += ",\n";

@@ -2,7 +2,8 @@
 ///
 /// Engines put events in, where RenderSettings::trace says so; the command writes them as a Chrome trace, which
 /// Perfetto (ui.perfetto.dev) and chrome://tracing open. Names are literals: only pointers are kept.
-/// Memory is bounded: a lane keeps its first kMostEvents events and counts what it had to drop.
+/// Memory is bounded: a lane keeps its first kMostEvents events, or what there is memory for, and counts what it had to
+/// drop.
 /// Thread safety: begin() and what reads are for one thread alone; a lane is for the thread that it belongs to.
 #pragma once
 
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -53,9 +55,13 @@ class Trace {
 
       private:
         void add(const Event& event) {
-            if (events_.size() < kMostEvents) {
+            if (events_.size() == kMostEvents) {
+                ++dropped_;
+                return;
+            }
+            try {
                 events_.push_back(event);
-            } else {
+            } catch (const std::bad_alloc&) {  // what is looked at shall not end by being looked at
                 ++dropped_;
             }
         }
@@ -68,6 +74,10 @@ class Trace {
     void begin(double start_s, int threads) {
         if (lanes_.empty()) start_s_ = start_s;
         lanes_.resize(std::max(lanes_.size(), static_cast<std::size_t>(threads)));
+    }
+    /// Drops the lanes behind the last one that holds anything: of threads that OpenMP did not give.
+    void drop_idle_lanes() {
+        while (!lanes_.empty() && lanes_.back().events().empty()) lanes_.pop_back();
     }
     Lane& lane(int thread) { return lanes_[static_cast<std::size_t>(thread)]; }
     [[nodiscard]] const std::vector<Lane>& lanes() const { return lanes_; }

@@ -1,7 +1,7 @@
 /// The closest hit of one ray: the scene's large shapes, then the trees, a register of boxes or shapes at a time.
 ///
-/// Called by whatever traces rays one by one. Ties go to the smaller primitive id. `Work` counts what was tested:
-/// WorkCount does, NoWorkCount costs nothing.
+/// Called by whatever traces rays one by one. Ties go to the smaller primitive id, so to the first listed of its kind.
+/// `Work` counts what was tested: WorkCount does, NoWorkCount costs nothing.
 #pragma once
 
 #include <cstdint>
@@ -42,9 +42,10 @@ struct NoWorkCount {
     RAYPOOL_INLINE void begin_segment() {}
 };
 
-/// Deepest tree: 40 levels of heuristic splits and 24 of halves (bvh.cpp), each leaving width - 1 nodes behind.
+/// The deepest tree's: a node takes itself from the stack and puts up to `width` children there, so each level of nodes
+/// leaves width - 1 behind. A level of a wide tree stands for one or more of the binary one.
 template <int width>
-inline constexpr int kTraversalStack = (40 + 24 + 1) * (width - 1) + 1;
+inline constexpr int kTraversalStack = kMostTreeLevels*(width - 1) + 1;
 
 /// One ray in every lane, with what the box test and the shapes need of it.
 template <class Real>
@@ -132,15 +133,15 @@ requires requires(Block b) {
     b.dual_u;
 }
 RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& ray, Hit<ScalarOf<Real>>& hit) {
-    const Mask<Real> leaving = is_leaving<Real>(block.id, ray.leaving_id);
-    const Vec3<Real> corner = load<Real>(block.corner);
+    const Mask<Real> leaving = is_leaving<Real>(block.group, ray.leaving_id);
+    const Vec3<Real> point = load<Real>(block.point);
     const Vec3<Real> normal = load<Real>(block.normal);
     if constexpr (in_box == InBox::No) {
-        const Real t = plane_distance<Real>(ray.origin, ray.direction, corner, normal, leaving);
+        const Real t = plane_distance<Real>(ray.origin, ray.direction, point, normal, leaving);
         keep_closest<Real>(t, block.id, mask_bits(t <= Real(hit.t) && t < Real(kInfinity<Real>)), hit);
     } else {
-        const Real t = quad_distance<Real>(ray.origin, ray.direction, corner, normal, load<Real>(block.dual_u),
-                                           load<Real>(block.dual_v), leaving);
+        const Real t = quad_distance<Real>(ray.origin, ray.direction, point, normal, load<Real>(block.corner),
+                                           load<Real>(block.dual_u), load<Real>(block.dual_v), leaving);
         const Mask<Real> is_closer = t <= Real(hit.t) && t < Real(kInfinity<Real>);
         if (none(is_closer)) return;
         const Mask<Real> is_inside =
@@ -198,7 +199,7 @@ RAYPOOL_INLINE void walk(const BlockTree<Block, ScalarOf<Real>, kLanes<Real>>& t
 
 }  // namespace detail
 
-/// `leaving_id` is the primitive that the ray starts on, or kNoPrimitive.
+/// `leaving_id` is what the ray starts on (SurfaceRow::kGroup of the primitive), or kNoPrimitive.
 template <SceneNeeds needs, class Scalar, class Work>
 [[gnu::noinline]] Hit<Scalar> closest_hit(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray,
                                           std::int32_t leaving_id, Work& work) {

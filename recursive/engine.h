@@ -13,15 +13,19 @@ class RecursiveEngine : public Engine {
   public:
     [[nodiscard]] std::string name() const override { return "recursive"; }
     /// Throws InputError when a thread's stack cannot hold the depth, and says what would.
-    RenderReport render(const CompiledScene<float>&, const RenderSettings&, Framebuffer&) const override;
-    RenderReport render(const CompiledScene<double>&, const RenderSettings&, Framebuffer&) const override;
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>&, const RenderSettings&,
+                                                       Framebuffer&) const override;
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<double>&, const RenderSettings&,
+                                                       Framebuffer&) const override;
 };
 
 class IterativeEngine : public Engine {
   public:
     [[nodiscard]] std::string name() const override { return "iterative"; }
-    RenderReport render(const CompiledScene<float>&, const RenderSettings&, Framebuffer&) const override;
-    RenderReport render(const CompiledScene<double>&, const RenderSettings&, Framebuffer&) const override;
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>&, const RenderSettings&,
+                                                       Framebuffer&) const override;
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<double>&, const RenderSettings&,
+                                                       Framebuffer&) const override;
 };
 
 }  // namespace raypool::recursive

@@ -28,10 +28,10 @@ class ItemLog {
         y_ = range.y_begin;
         begin_s_ = omp_get_wtime();
     }
-    void stop(const PixelRange& range) {
-        if (lane_ == nullptr) return;
-        end_s_ = omp_get_wtime();
-        pixels_ += (range.x_end - range.x_begin) * (range.y_end - range.y_begin);
+    /// So many pixels of the item were rendered.
+    void add(std::int64_t pixels) { pixels_ += lane_ == nullptr ? 0 : pixels; }
+    void stop() {
+        if (lane_ != nullptr) end_s_ = omp_get_wtime();
     }
 
   private:

@@ -44,8 +44,13 @@ inline constexpr std::size_t kStackReserve = 64 * 1024;
 template <SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules>
 void check_stack(std::int32_t depth, int threads) {
     std::size_t left = std::numeric_limits<std::size_t>::max();
+    {
+        const OpenMpState state({});
+        FirstException failure;
 #pragma omp parallel num_threads(threads) reduction(min : left)
-    left = stack_bytes_left();
+        failure.run([&left] { left = stack_bytes_left(); });
+        failure.rethrow();
+    }
 
     const std::size_t per_bounce = stack_bytes_per_bounce<needs, Scalar, Work, splitting, rules>();
     const std::size_t held = left < kStackReserve ? 0 : (left - kStackReserve) / per_bounce;
@@ -59,66 +64,95 @@ void check_stack(std::int32_t depth, int threads) {
                     depth, wanted, per_bounce, held == 0 ? 0 : held - 1, wanted * 1024, wanted));
 }
 
-template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting = Splitting::Off,
-          Rules rules = Rules::Any>
-RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {
-    check_settings(settings, framebuffer);
-    if constexpr (form == Form::Recursive) {
-        check_stack<needs, Scalar, Work, splitting, rules>(settings.depth, settings.threads);
+template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules>
+class Session : public RenderSession {
+  public:
+    Session(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer)
+        : scene_(scene), settings_(settings), framebuffer_(framebuffer) {
+        const double start = omp_get_wtime();
+        check_settings(settings, framebuffer);
+        report_.threads.reserve(static_cast<std::size_t>(settings.threads));  // so that no report fails behind a render
+        if constexpr (form == Form::Recursive) {
+            check_stack<needs, Scalar, Work, splitting, rules>(settings.depth, settings.threads);
+            report_.seconds = report_.setup_s = omp_get_wtime() - start;
+        }
     }
-    const WorkItems items(scene.width, scene.height, settings.grain);
-    return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
-        Tracer<needs, Scalar, Work, splitting, rules> tracer(scene, settings, framebuffer.fixed_point());
-        ProgressBatch progress(settings.progress);
-        ItemLog log(settings, omp_get_thread_num());
-        PixelCost cost(settings.cost_image);
-        ChosenPixels chosen(settings.pixels);
-        const bool has_squares = framebuffer.has_squares();
+
+  private:
+    RenderReport render(const RenderUnit& unit) override {
+        const double start = omp_get_wtime();
+        const WorkItems items(scene_.width, scene_.height, settings_.grain, unit.pixels);
+        const double setup_s = omp_get_wtime() - start;
+        RenderReport report = run_threads(settings_, [&](ThreadWork& work, SampleAudit& audit) {
+            Tracer<needs, Scalar, Work, splitting, rules> tracer(scene_, settings_, framebuffer_.fixed_point());
+            ProgressBatch progress(settings_.progress);
+            ItemLog log(settings_, omp_get_thread_num());
+            PixelCost cost(settings_.cost_image);
+            const bool has_squares = framebuffer_.has_squares();
+            const std::int64_t samples = unit.end_sample - unit.first_sample;
 
 #pragma omp for schedule(runtime) nowait
-        for (std::int64_t item = 0; item < items.count(); ++item) {
-            const PixelRange range = items.range(item);
-            log.start(range);
-            for (std::int64_t y = range.y_begin; y < range.y_end; ++y) {
-                for (std::int64_t x = range.x_begin; x < range.x_end; ++x) {
-                    const std::int64_t pixel = y * scene.width + x;
-                    if (!chosen.contains(pixel)) continue;
-                    FixedRgb sum{};
-                    std::int64_t square = 0;
-                    cost.start(tracer);
-                    for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s) {
-                        const FixedRgb& sample = tracer.template sample<form>(x, y, s);
-                        for (int i = 0; i < 3; ++i) sum[i] += sample[i];
-                        if (has_squares) square += tracer.square(sample);
+            for (std::int64_t item = 0; item < items.count(); ++item) {
+                const PixelRange range = items.range(item);
+                log.start(range);
+                items.for_each_line(item, [&](const LinePixels& line) {
+                    const std::int64_t y = line[0] / scene_.width;
+                    for (std::int64_t i = 0; i < line.count; ++i) {
+                        const std::int64_t pixel = line[i];
+                        const std::int64_t x = pixel - y * scene_.width;
+                        FixedRgb sum{};
+                        FixedSquare square;
+                        cost.start(tracer);
+                        for (std::int64_t s = unit.first_sample; s < unit.end_sample; ++s) {
+                            const FixedRgb& sample = tracer.template sample<form>(x, y, s);
+                            for (int k = 0; k < 3; ++k) sum[k] += sample[k];
+                            if (has_squares) square.add(tracer.square(sample));
+                        }
+                        cost.stop(tracer, pixel);
+                        framebuffer_.add(pixel, sum);
+                        if (has_squares) framebuffer_.add_square(pixel, square);
+                        work.paths += samples;
+                        progress.add(samples);
                     }
-                    cost.stop(tracer, pixel);
-                    framebuffer.add(pixel, sum);
-                    if (has_squares) framebuffer.add_square(pixel, square);
-                    work.paths += settings.end_sample - settings.first_sample;
-                    progress.add(settings.end_sample - settings.first_sample);
-                }
+                    log.add(line.count);
+                });
+                log.stop();
             }
-            log.stop(range);
-        }
-        work.segments = tracer.segments();
-        work.box_tests = tracer.work().box_tests;
-        work.primitive_tests = tracer.work().primitive_tests;
-        audit = tracer.audit();
-    });
+            work.segments = tracer.segments();
+            work.box_tests = tracer.work().box_tests;
+            work.primitive_tests = tracer.work().primitive_tests;
+            audit = tracer.audit();
+        });
+        report.setup_s += setup_s;
+        report.seconds += setup_s;
+        return report;
+    }
+
+    const CompiledScene<Scalar>& scene_;
+    RenderSettings settings_;
+    Framebuffer& framebuffer_;
+};
+
+template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting = Splitting::Off,
+          Rules rules = Rules::Any>
+std::unique_ptr<RenderSession> begin(const CompiledScene<Scalar>& scene, const RenderSettings& settings,
+                                     Framebuffer& framebuffer) {
+    return std::make_unique<Session<form, needs, Scalar, Work, splitting, rules>>(scene, settings, framebuffer);
 }
 
 /// Picks the code compiled for what the scene needs. Counting and splitting are compiled once each, for all needs.
 template <Form form, class Scalar>
-RenderReport render(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {
+std::unique_ptr<RenderSession> begin(const CompiledScene<Scalar>& scene, const RenderSettings& settings,
+                                     Framebuffer& framebuffer) {
     if (settings.split_depth > 0)
-        return render<form, kEverything, Scalar, WorkCount, Splitting::On>(scene, settings, framebuffer);
+        return begin<form, kEverything, Scalar, WorkCount, Splitting::On>(scene, settings, framebuffer);
     const bool counts_for_image = settings.cost_image != nullptr && settings.cost_image->cost == Cost::Tests;
     if (settings.count_work || counts_for_image)
-        return render<form, kEverything, Scalar, WorkCount>(scene, settings, framebuffer);
+        return begin<form, kEverything, Scalar, WorkCount>(scene, settings, framebuffer);
     return dispatch_needs(scene.needs, [&]<SceneNeeds needs>() {
-        return are_plain(settings) ? render<form, needs, Scalar, NoWorkCount, Splitting::Off, Rules::Plain>(
-                                         scene, settings, framebuffer)
-                                   : render<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);
+        return are_plain(settings)
+                   ? begin<form, needs, Scalar, NoWorkCount, Splitting::Off, Rules::Plain>(scene, settings, framebuffer)
+                   : begin<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);
     });
 }
 

@@ -3,13 +3,13 @@
 
 namespace raypool::recursive {
 
-RenderReport IterativeEngine::render(const CompiledScene<float>& scene, const RenderSettings& settings,
-                                     Framebuffer& framebuffer) const {
-    return recursive::render<Form::Iterative>(scene, settings, framebuffer);
+std::unique_ptr<RenderSession> IterativeEngine::begin(const CompiledScene<float>& scene, const RenderSettings& settings,
+                                                      Framebuffer& framebuffer) const {
+    return recursive::begin<Form::Iterative>(scene, settings, framebuffer);
 }
-RenderReport IterativeEngine::render(const CompiledScene<double>& scene, const RenderSettings& settings,
-                                     Framebuffer& framebuffer) const {
-    return recursive::render<Form::Iterative>(scene, settings, framebuffer);
+std::unique_ptr<RenderSession> IterativeEngine::begin(const CompiledScene<double>& scene,
+                                                      const RenderSettings& settings, Framebuffer& framebuffer) const {
+    return recursive::begin<Form::Iterative>(scene, settings, framebuffer);
 }
 
 }  // namespace raypool::recursive

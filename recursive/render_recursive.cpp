@@ -4,13 +4,13 @@
 
 namespace raypool::recursive {
 
-RenderReport RecursiveEngine::render(const CompiledScene<float>& scene, const RenderSettings& settings,
-                                     Framebuffer& framebuffer) const {
-    return recursive::render<Form::Recursive>(scene, settings, framebuffer);
+std::unique_ptr<RenderSession> RecursiveEngine::begin(const CompiledScene<float>& scene, const RenderSettings& settings,
+                                                      Framebuffer& framebuffer) const {
+    return recursive::begin<Form::Recursive>(scene, settings, framebuffer);
 }
-RenderReport RecursiveEngine::render(const CompiledScene<double>& scene, const RenderSettings& settings,
-                                     Framebuffer& framebuffer) const {
-    return recursive::render<Form::Recursive>(scene, settings, framebuffer);
+std::unique_ptr<RenderSession> RecursiveEngine::begin(const CompiledScene<double>& scene,
+                                                      const RenderSettings& settings, Framebuffer& framebuffer) const {
+    return recursive::begin<Form::Recursive>(scene, settings, framebuffer);
 }
 
 }  // namespace raypool::recursive

@@ -23,7 +23,7 @@ struct Path {
     Ray<Scalar> ray;
     Vec3<Scalar> throughput;
     PathKey<Scalar> key;
-    std::int32_t leaving_id;  ///< the primitive the ray starts on
+    std::int32_t leaving_id;  ///< what the ray starts on: Scattered::leaving_id
     std::uint32_t step;       ///< path_step: hits so far, and the branch
 };
 
@@ -70,7 +70,7 @@ class Tracer {
 
     [[nodiscard]] std::int64_t segments() const { return segments_; }
     [[nodiscard]] const Work& work() const { return work_; }
-    [[nodiscard]] std::int64_t square(const FixedRgb& sample) const { return converter_.square(sample); }
+    [[nodiscard]] FixedSquare square(const FixedRgb& sample) const { return converter_.square(sample); }
     [[nodiscard]] const SampleAudit& audit() const { return converter_.audit(); }
     [[nodiscard]] std::uintptr_t deepest_stack() const { return deepest_stack_; }
 
@@ -120,7 +120,7 @@ class Tracer {
         path.ray.origin = out.origin;
         path.ray.direction = out.direction;
         path.throughput = out.throughput;
-        path.leaving_id = static_cast<std::int32_t>(hit.primitive_id);
+        path.leaving_id = static_cast<std::int32_t>(out.leaving_id);
         ++path.step;
         if constexpr (splitting == Splitting::On) {
             if (out.is_split) {

@@ -1,12 +1,17 @@
 /// Accumulators: the ways in which deposits reach the framebuffer. To compare them is one of the project's experiments.
 ///
-/// An accumulator is made once a render and adds for all threads; finish() is called once, by one thread, when all are
-/// done. Those that add integers give the same bits in any order. AtomicReal adds floating-point numbers: its image
-/// depends on the order, and so on threads and schedule.
+/// An accumulator is made once a session and adds for all threads. Those that keep sums of their own bring them into
+/// the framebuffer, and begin anew, by merge(), a block of pixels at a time: threads may merge different blocks at
+/// once, and none adds meanwhile. Those that add integers give the same bits in any order. AtomicReal adds
+/// floating-point numbers: its image depends on the order, and so on threads and schedule.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <memory>
+#include <new>
+#include <utility>
 #include <vector>
 
 #include "core/framebuffer.h"
@@ -23,13 +28,44 @@ class AccumulatorBase {
     AccumulatorBase& operator=(const AccumulatorBase&) = delete;
     virtual ~AccumulatorBase() = default;
     virtual void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int thread) = 0;
-    virtual void finish() {}
+    [[nodiscard]] virtual std::size_t block_count() const { return 0; }
+    virtual void merge(std::size_t /*block*/) {}
+    /// Of sums of its own; 0 where it adds to the framebuffer.
     [[nodiscard]] virtual std::size_t bytes() const { return 0; }
+};
+
+/// Brings everything into the framebuffer, in one thread.
+template <class Scalar>
+void merge_all(AccumulatorBase<Scalar>& accumulator) {
+    for (std::size_t block = 0; block < accumulator.block_count(); ++block) accumulator.merge(block);
+}
+
+/// Pixels that are merged at a time.
+inline constexpr std::size_t kBlockPixels = 1024;
+inline std::size_t block_count_of(std::size_t pixels) {
+    return (pixels + kBlockPixels - 1) / kBlockPixels;
+}
+
+/// Zeros, which take memory where they are first written to only, and near the thread that does.
+template <class T>
+class Zeros {
+  public:
+    explicit Zeros(std::size_t size)
+        : memory_(static_cast<T*>(std::calloc(std::max<std::size_t>(size, 1), sizeof(T)))) {
+        if (memory_ == nullptr) throw std::bad_alloc();
+    }
+    [[nodiscard]] T* data() const { return memory_.get(); }
+
+  private:
+    struct Free {
+        void operator()(T* memory) const { std::free(memory); }
+    };
+    std::unique_ptr<T[], Free> memory_;
 };
 
 /// Where the three sums of a pixel are: side by side, as in the framebuffer, or each in a plane of its own. To compare
 /// them is the paper's "interleaved against three planar framebuffers". The sums of squares, where the framebuffer
-/// keeps them (null elsewhere), are a plane always.
+/// keeps them (null elsewhere), are apart from both, two digits a pixel.
 struct Interleaved {
     std::int64_t* sums;
     std::int64_t* squares;
@@ -63,7 +99,12 @@ void add_integers(const Layout& layout, const Deposits<Scalar>& deposits, Sample
         const FixedRgb fixed = converter.convert<Scalar>(deposits.radiance(i));
         for (int k = 0; k < 3; ++k) add(layout.at(deposits.pixel(i), k), fixed[static_cast<std::size_t>(k)]);
         // A path that is not split deposits once, so that a deposit is a whole sample.
-        if (layout.squares != nullptr) add(layout.squares[deposits.pixel(i)], converter.square(fixed));
+        if (layout.squares != nullptr) {
+            const FixedSquare square = converter.square(fixed);
+            std::int64_t* digits = layout.squares + 2 * std::size_t{deposits.pixel(i)};
+            add(digits[0], square.low);
+            add(digits[1], square.high);
+        }
     }
 }
 
@@ -85,7 +126,7 @@ class InterleavedInt64 : public AccumulatorBase<Scalar> {
     Interleaved sums_;
 };
 
-/// Adds to three planes, which are put into the framebuffer at the end.
+/// Adds to three planes, which merge() puts into the framebuffer.
 template <class Scalar, Addition addition>
 class PlanarInt64 : public AccumulatorBase<Scalar> {
   public:
@@ -96,45 +137,64 @@ class PlanarInt64 : public AccumulatorBase<Scalar> {
     void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) override {
         add_integers<addition>(planar_, deposits, converter);
     }
-    void finish() override {
-        for (std::size_t pixel = 0; pixel < planar_.pixel_count; ++pixel)
-            for (int k = 0; k < 3; ++k) Interleaved{sums_.data(), nullptr}.at(pixel, k) += planar_.at(pixel, k);
+    [[nodiscard]] std::size_t block_count() const override { return block_count_of(planar_.pixel_count); }
+    void merge(std::size_t block) override {
+        const std::size_t end = std::min((block + 1) * kBlockPixels, planar_.pixel_count);
+        for (std::size_t pixel = block * kBlockPixels; pixel < end; ++pixel)
+            for (int k = 0; k < 3; ++k)
+                Interleaved{sums_.data(), nullptr}.at(pixel, k) += std::exchange(planar_.at(pixel, k), 0);
     }
-    [[nodiscard]] std::size_t bytes() const override { return planes_.size() * sizeof(std::int64_t); }
+    [[nodiscard]] std::size_t bytes() const override { return sums_.size() * sizeof(std::int64_t); }
 
   private:
     std::span<std::int64_t> sums_;
-    std::vector<std::int64_t> planes_;
+    Zeros<std::int64_t> planes_;
     Planar planar_;
 };
 
-/// A framebuffer for each thread, merged at the end.
+/// A framebuffer for each thread, of which merge() reads those blocks that the thread has added to.
 template <class Scalar>
 class PrivateInt64 : public AccumulatorBase<Scalar> {
   public:
-    PrivateInt64(Framebuffer& framebuffer, int threads)
-        : sums_(framebuffer.sums()), squares_(framebuffer.squares()), parts_(static_cast<std::size_t>(threads)) {
-        for (auto& part : parts_) part.resize(sums_.size() + squares_.size());
+    PrivateInt64(Framebuffer& framebuffer, int threads) : sums_(framebuffer.sums()), squares_(framebuffer.squares()) {
+        parts_.reserve(static_cast<std::size_t>(threads));
+        for (int i = 0; i < threads; ++i)
+            parts_.push_back(
+                {Zeros<std::int64_t>(sums_.size() + squares_.size()), std::vector<std::uint8_t>(block_count(), 0)});
     }
     void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int thread) override {
-        std::int64_t* part = parts_[static_cast<std::size_t>(thread)].data();
-        add_integers<Addition::Plain>(Interleaved{part, squares_.empty() ? nullptr : part + sums_.size()}, deposits,
+        Part& part = parts_[static_cast<std::size_t>(thread)];
+        std::int64_t* sums = part.sums.data();
+        add_integers<Addition::Plain>(Interleaved{sums, squares_.empty() ? nullptr : sums + sums_.size()}, deposits,
                                       converter);
+        for (std::size_t i = 0; i < deposits.count(); ++i) part.is_used[deposits.pixel(i) / kBlockPixels] = 1;
     }
-    void finish() override {
-        for (const auto& part : parts_) {
-            for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += part[i];
-            for (std::size_t i = 0; i < squares_.size(); ++i) squares_[i] += part[sums_.size() + i];
+    [[nodiscard]] std::size_t block_count() const override { return block_count_of(sums_.size() / 3); }
+    void merge(std::size_t block) override {
+        const std::size_t begin = block * kBlockPixels;
+        const std::size_t end = std::min(begin + kBlockPixels, sums_.size() / 3);
+        for (Part& part : parts_) {
+            if (std::exchange(part.is_used[block], std::uint8_t{0}) == 0) continue;
+            take(part.sums.data(), sums_, 3 * begin, 3 * end);
+            take(part.sums.data() + sums_.size(), squares_, squares_per_pixel() * begin, squares_per_pixel() * end);
         }
     }
     [[nodiscard]] std::size_t bytes() const override {
-        return parts_.size() * (sums_.size() + squares_.size()) * sizeof(std::int64_t);
+        return parts_.size() * ((sums_.size() + squares_.size()) * sizeof(std::int64_t) + block_count());
     }
 
   private:
+    struct Part {
+        Zeros<std::int64_t> sums;           ///< and behind them the squares
+        std::vector<std::uint8_t> is_used;  ///< by block
+    };
+    [[nodiscard]] std::size_t squares_per_pixel() const { return squares_.size() / (sums_.size() / 3); }
+    static void take(std::int64_t* from, std::span<std::int64_t> to, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) to[i] += std::exchange(from[i], 0);
+    }
     std::span<std::int64_t> sums_;
     std::span<std::int64_t> squares_;
-    std::vector<std::vector<std::int64_t>> parts_;  ///< a thread's sums, then its squares
+    std::vector<Part> parts_;  ///< by thread
 };
 
 /// Atomic additions of floating-point numbers: a compare-and-swap loop. Not reproducible.
@@ -145,21 +205,24 @@ class AtomicReal : public AccumulatorBase<Scalar> {
     void add(const Deposits<Scalar>& deposits, SampleConverter&, int) override {
         for (std::size_t i = 0; i < deposits.count(); ++i) {
             const Vec3<Scalar> radiance = deposits.radiance(i);
-            Sum* sum = &sums_[3 * std::size_t{deposits.pixel(i)}];
+            Sum* sum = sums_.data() + 3 * std::size_t{deposits.pixel(i)};
             for (int k = 0; k < 3; ++k)
                 std::atomic_ref(sum[k]).fetch_add(static_cast<Sum>(radiance[k]), std::memory_order_relaxed);
         }
     }
-    void finish() override {
+    [[nodiscard]] std::size_t block_count() const override { return block_count_of(framebuffer_.sums().size() / 3); }
+    void merge(std::size_t block) override {
         const double scale = framebuffer_.fixed_point().scale();
-        for (std::size_t i = 0; i < sums_.size(); ++i)
-            framebuffer_.sums()[i] += std::llrint(static_cast<double>(sums_[i]) * scale);
+        const std::span<std::int64_t> out = framebuffer_.sums();
+        const std::size_t end = std::min(3 * (block + 1) * kBlockPixels, out.size());
+        for (std::size_t i = 3 * block * kBlockPixels; i < end; ++i)
+            out[i] += std::llrint(static_cast<double>(std::exchange(sums_.data()[i], Sum{0})) * scale);
     }
-    [[nodiscard]] std::size_t bytes() const override { return sums_.size() * sizeof(Sum); }
+    [[nodiscard]] std::size_t bytes() const override { return framebuffer_.sums().size() * sizeof(Sum); }
 
   private:
     Framebuffer& framebuffer_;
-    std::vector<Sum> sums_;
+    Zeros<Sum> sums_;
 };
 
 template <class Scalar>

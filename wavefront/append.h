@@ -41,16 +41,29 @@ class PathCounter {
     std::atomic<std::int64_t> next_ = 0;
 };
 
+/// How `capacity` records lie in batches of about `batch`, each with room for all branches of a path: capacity is at
+/// least 2^split_depth.
+struct PoolShape {
+    PoolShape(std::size_t capacity, std::size_t batch, int split_depth)
+        : batch_count(std::min((capacity + batch - 1) / batch, capacity >> static_cast<unsigned>(split_depth))),
+          stride(((capacity + batch_count - 1) / batch_count + kPadding - 1) / kPadding * kPadding),
+          allocated(stride * batch_count + kRoomToGenerate) {}
+
+    static constexpr std::size_t kRoomToGenerate = 64;  ///< camera paths may be written behind a full range
+    std::size_t batch_count;
+    std::size_t stride;     ///< from batch to batch: whole registers, so that no two threads touch one
+    std::size_t allocated;  ///< records that there is room for
+};
+
 template <SceneNeeds needs, class Scalar>
 class SharedPool {
   public:
     using Records = RayColumns<needs, Scalar>;
 
-    /// `capacity` records in batches of about `batch`, each with room for all branches of a path: capacity is at least
-    /// 2^split_depth.
     SharedPool(std::size_t capacity, std::size_t batch, int split_depth)
-        : batch_count_(std::min((capacity + batch - 1) / batch, capacity >> static_cast<unsigned>(split_depth))),
-          stride_(((capacity + batch_count_ - 1) / batch_count_ + kPadding - 1) / kPadding * kPadding),
+        : shape_(capacity, batch, split_depth),
+          batch_count_(shape_.batch_count),
+          stride_(shape_.stride),
           camera_capacity_(std::max<std::size_t>(capacity >> static_cast<unsigned>(split_depth), 1)),
           split_depth_(split_depth),
           records_(allocated()) {}
@@ -76,14 +89,13 @@ class SharedPool {
     virtual std::size_t keep(std::int64_t b, std::size_t from, std::size_t front, const Records& overflow,
                              std::size_t split) = 0;
     virtual void end_round(const std::function<void()>& wait) = 0;
-    [[nodiscard]] virtual std::size_t bytes() const { return Records::bytes(allocated()); }
 
   protected:
-    [[nodiscard]] std::size_t allocated() const { return stride_ * batch_count_ + kRoomToGenerate; }
+    [[nodiscard]] std::size_t allocated() const { return shape_.allocated; }
 
-    static constexpr std::size_t kRoomToGenerate = 64;  ///< camera paths may be written behind a full range
+    PoolShape shape_;
     std::size_t batch_count_;
-    std::size_t stride_;  ///< from batch to batch: whole registers, so that no two threads touch one
+    std::size_t stride_;
     std::size_t camera_capacity_;
     int split_depth_;
     std::size_t total_ = 0;
@@ -164,9 +176,6 @@ class AtomicPool : public DensePool<needs, Scalar> {
             this->total_ = next_.exchange(0);
         }
     }
-    [[nodiscard]] std::size_t bytes() const override {
-        return 2 * Base::bytes();
-    }
 
   private:
     typename Base::Records next_records_;
@@ -203,9 +212,6 @@ class PrefixSumPool : public DensePool<needs, Scalar> {
             for (Buffer& buffer : buffers_) this->total_ += std::exchange(buffer.count, 0);
         }
     }
-    [[nodiscard]] std::size_t bytes() const override {
-        return (1 + buffers_.size()) * Base::bytes();
-    }
 
   private:
     struct alignas(64) Buffer {
@@ -214,6 +220,22 @@ class PrefixSumPool : public DensePool<needs, Scalar> {
     };
     std::vector<Buffer> buffers_;
 };
+
+/// What make_shared_pool() allocates: a pool by its shape; the one that survivors move to; or a buffer of each thread,
+/// any of which may have to take them all.
+template <SceneNeeds needs, class Scalar>
+std::size_t shared_pool_bytes(Append append, const PoolShape& shape, int threads) {
+    const std::size_t one = RayColumns<needs, Scalar>::bytes(shape.allocated);
+    switch (append) {
+        case Append::InPlace:
+            break;
+        case Append::Atomic:
+            return 2 * one;
+        case Append::PrefixSum:
+            return (1 + static_cast<std::size_t>(threads)) * one;
+    }
+    return one;
+}
 
 template <SceneNeeds needs, class Scalar>
 std::unique_ptr<SharedPool<needs, Scalar>> make_shared_pool(Append append, std::size_t capacity, std::size_t batch,

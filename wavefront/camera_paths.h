@@ -47,11 +47,10 @@ class CameraPaths {
                       end_sample) {
         pixels_ = pixels.data();
     }
-    /// Of all pixels, or those that the settings choose.
-    CameraPaths(const RenderSettings& settings, std::int64_t width, std::int64_t height)
-        : CameraPaths(PixelRange{0, width, 0, height}, width, settings.first_sample, settings.end_sample) {
-        if (settings.pixels != nullptr)
-            *this = CameraPaths(*settings.pixels, width, settings.first_sample, settings.end_sample);
+    /// Of a unit.
+    CameraPaths(const RenderUnit& unit, std::int64_t width, std::int64_t height)
+        : CameraPaths(PixelRange{0, width, 0, height}, width, unit.first_sample, unit.end_sample) {
+        if (unit.pixels != nullptr) *this = CameraPaths(*unit.pixels, width, unit.first_sample, unit.end_sample);
     }
 
     [[nodiscard]] bool is_done() const { return left_ == 0; }

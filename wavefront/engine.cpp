@@ -1,15 +1,38 @@
 #include "wavefront/engine.h"
 
+#include <new>
+
+#include <fmt/format.h>
+
 #include "core/error.h"
+#include "core/memory.h"
 #include "wavefront/render_widths.h"
 
 namespace raypool::wavefront {
 
 namespace {
 
+/// Of depth 0: no path has a segment.
 template <class Scalar>
-RenderReport render_any(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const PoolSettings& pool,
-                        Framebuffer& framebuffer) {
+class DarkSession : public RenderSession {
+  public:
+    DarkSession(const CompiledScene<Scalar>& scene, Progress* progress) : scene_(scene), progress_(progress) {}
+
+  private:
+    RenderReport render(const RenderUnit& unit) override {
+        RenderReport report;
+        report.threads.resize(1);
+        report.threads[0].paths = path_count(scene_, unit);
+        if (progress_ != nullptr) progress_->paths += report.threads[0].paths;
+        return report;
+    }
+    const CompiledScene<Scalar>& scene_;
+    Progress* progress_;
+};
+
+template <class Scalar>
+std::unique_ptr<RenderSession> begin_any(const CompiledScene<Scalar>& scene, const RenderSettings& settings,
+                                         const PoolSettings& pool, Framebuffer& framebuffer) {
     if (settings.cost_image != nullptr)
         throw InputError(
             "--cost-image: a pool works on many pixels at a time; the engines that know what a pixel costs are "
@@ -22,27 +45,27 @@ RenderReport render_any(const CompiledScene<Scalar>& scene, const RenderSettings
     check_settings(settings, framebuffer);
     if (framebuffer.has_squares() && adds_reals(pool.accumulator))
         throw InputError("--accumulator: atomic-float and atomic-double keep no squares, which --target-error needs");
-    const std::int64_t paths = path_count(scene, settings);
-    if (settings.depth == 0 || paths == 0) {  // no path has a segment
-        RenderReport report;
-        report.threads.resize(static_cast<std::size_t>(settings.threads));
-        report.threads[0].paths = paths;
-        if (settings.progress != nullptr) settings.progress->paths += paths;
-        return report;
+    if (settings.depth == 0) return std::make_unique<DarkSession<Scalar>>(scene, settings.progress);
+    try {
+        return pool.width == StageWidth::Simd ? begin_simd(scene, settings, pool, framebuffer)
+                                              : begin_scalar(scene, settings, pool, framebuffer);
+    } catch (const std::bad_alloc&) {
+        throw InputError(
+            fmt::format("--pool-rays, --threads, --accumulator: no memory for the pools, the stages and the "
+                        "accumulator; {} are available",
+                        bytes_text(available_memory())));
     }
-    return pool.width == StageWidth::Simd ? render_simd(scene, settings, pool, framebuffer)
-                                          : render_scalar(scene, settings, pool, framebuffer);
 }
 
 }  // namespace
 
-RenderReport WavefrontEngine::render(const CompiledScene<float>& scene, const RenderSettings& settings,
-                                     Framebuffer& framebuffer) const {
-    return render_any(scene, settings, pool_, framebuffer);
+std::unique_ptr<RenderSession> WavefrontEngine::begin(const CompiledScene<float>& scene, const RenderSettings& settings,
+                                                      Framebuffer& framebuffer) const {
+    return begin_any(scene, settings, pool_, framebuffer);
 }
-RenderReport WavefrontEngine::render(const CompiledScene<double>& scene, const RenderSettings& settings,
-                                     Framebuffer& framebuffer) const {
-    return render_any(scene, settings, pool_, framebuffer);
+std::unique_ptr<RenderSession> WavefrontEngine::begin(const CompiledScene<double>& scene,
+                                                      const RenderSettings& settings, Framebuffer& framebuffer) const {
+    return begin_any(scene, settings, pool_, framebuffer);
 }
 
 }  // namespace raypool::wavefront

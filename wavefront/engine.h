@@ -14,9 +14,12 @@ class WavefrontEngine : public Engine {
   public:
     explicit WavefrontEngine(const PoolSettings& pool) : pool_(pool) {}
     [[nodiscard]] std::string name() const override { return "wavefront"; }
+    [[nodiscard]] bool loops_over_image() const override { return wavefront::loops_over_image(pool_); }
     /// Throws InputError for an accumulator that needs pixels owned by threads with a shared pool.
-    RenderReport render(const CompiledScene<float>&, const RenderSettings&, Framebuffer&) const override;
-    RenderReport render(const CompiledScene<double>&, const RenderSettings&, Framebuffer&) const override;
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>&, const RenderSettings&,
+                                                       Framebuffer&) const override;
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<double>&, const RenderSettings&,
+                                                       Framebuffer&) const override;
 
   private:
     PoolSettings pool_;

@@ -22,7 +22,7 @@ struct RayRecord {
     Ray<Real> ray;
     Vec3<Real> throughput;
     PathKey<Real> key;
-    Uint32<Real> leaving_id;  ///< the primitive the ray starts on; kNoPrimitive as an unsigned number
+    Uint32<Real> leaving_id;  ///< what the ray starts on (Scattered::leaving_id); kNoPrimitive as an unsigned number
     Uint32<Real> step;        ///< path_step: hits so far, and the branch
 };
 

@@ -3,9 +3,9 @@
 
 namespace raypool::wavefront {
 
-RenderReport render_scalar(const CompiledScene<double>& scene, const RenderSettings& settings, const PoolSettings& pool,
-                           Framebuffer& framebuffer) {
-    return render<double>(scene, settings, pool, framebuffer);
+std::unique_ptr<RenderSession> begin_scalar(const CompiledScene<double>& scene, const RenderSettings& settings,
+                                            const PoolSettings& pool, Framebuffer& framebuffer) {
+    return begin<double>(scene, settings, pool, framebuffer);
 }
 
 }  // namespace raypool::wavefront

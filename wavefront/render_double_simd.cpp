@@ -3,9 +3,9 @@
 
 namespace raypool::wavefront {
 
-RenderReport render_simd(const CompiledScene<double>& scene, const RenderSettings& settings, const PoolSettings& pool,
-                         Framebuffer& framebuffer) {
-    return render<Wide<double, stdx::native_simd<double>::size()>>(scene, settings, pool, framebuffer);
+std::unique_ptr<RenderSession> begin_simd(const CompiledScene<double>& scene, const RenderSettings& settings,
+                                          const PoolSettings& pool, Framebuffer& framebuffer) {
+    return begin<Wide<double, stdx::native_simd<double>::size()>>(scene, settings, pool, framebuffer);
 }
 
 }  // namespace raypool::wavefront

@@ -3,9 +3,9 @@
 
 namespace raypool::wavefront {
 
-RenderReport render_scalar(const CompiledScene<float>& scene, const RenderSettings& settings, const PoolSettings& pool,
-                           Framebuffer& framebuffer) {
-    return render<float>(scene, settings, pool, framebuffer);
+std::unique_ptr<RenderSession> begin_scalar(const CompiledScene<float>& scene, const RenderSettings& settings,
+                                            const PoolSettings& pool, Framebuffer& framebuffer) {
+    return begin<float>(scene, settings, pool, framebuffer);
 }
 
 }  // namespace raypool::wavefront

@@ -3,9 +3,9 @@
 
 namespace raypool::wavefront {
 
-RenderReport render_simd(const CompiledScene<float>& scene, const RenderSettings& settings, const PoolSettings& pool,
-                         Framebuffer& framebuffer) {
-    return render<Wide<float, stdx::native_simd<float>::size()>>(scene, settings, pool, framebuffer);
+std::unique_ptr<RenderSession> begin_simd(const CompiledScene<float>& scene, const RenderSettings& settings,
+                                          const PoolSettings& pool, Framebuffer& framebuffer) {
+    return begin<Wide<float, stdx::native_simd<float>::size()>>(scene, settings, pool, framebuffer);
 }
 
 }  // namespace raypool::wavefront

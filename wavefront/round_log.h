@@ -1,5 +1,7 @@
 /// What happened in each round: kept by each thread for itself when rounds are logged or traced, otherwise free.
 ///
+/// Its memory is taken when it is made; within a render it takes no more and throws nothing.
+///
 /// A stage's time is what passes between start() and stop(); what lies between a stop() and the next start() is
 /// nobody's. In the trace a round is what lies between two calls of end_round().
 #pragma once
@@ -16,9 +18,21 @@ namespace raypool::wavefront {
 class RoundLog {
   public:
     RoundLog(const RenderSettings& settings, int thread)
-        : is_on_(settings.log_rounds || settings.trace != nullptr),
-          lane_(settings.trace == nullptr ? nullptr : &settings.trace->lane(thread)),
-          round_begin_s_(is_on_ ? omp_get_wtime() : 0) {}
+        : is_on_(settings.log_rounds || settings.trace != nullptr), trace_(settings.trace), thread_(thread) {
+        if (is_on_) rounds_.reserve(kMostRounds);
+    }
+
+    /// A unit of the render begins.
+    void begin() {
+        if (!is_on_) return;
+        rounds_.clear();
+        round_ = 0;
+        round_begin_s_ = mark_s_ = omp_get_wtime();
+        lane_ = trace_ == nullptr ? nullptr : &trace_->lane(thread_);
+        traced_rounds_ = 0;
+        traced_ = {};
+        batch_ = kNoBatch;
+    }
 
     /// From now on a batch of a shared pool is worked on.
     void start_batch(std::int64_t batch) {
@@ -123,8 +137,10 @@ class RoundLog {
     std::size_t round_ = 0;
     std::vector<RoundWork> rounds_;
 
-    Trace::Lane* lane_;  ///< null unless traced; all that follows is for it
-    double round_begin_s_;
+    Trace* trace_;
+    int thread_;
+    Trace::Lane* lane_ = nullptr;  ///< null unless traced; all that follows is for it
+    double round_begin_s_ = 0;
     std::int64_t traced_rounds_ = 0;
     RoundWork traced_;  ///< the round under way
     std::int64_t batch_ = kNoBatch;

@@ -9,12 +9,10 @@
 #include <omp.h>
 
 #include "wavefront/append.h"
+#include "wavefront/session.h"
 #include "wavefront/stages.h"
 
 namespace raypool::wavefront {
-
-/// What each thread logged.
-using ThreadRounds = std::vector<std::vector<RoundWork>>;
 
 /// Camera paths are brought in this many at a time, a few registers, so that a pool is always nearly full.
 inline constexpr std::size_t kCameraChunk = 64;
@@ -35,6 +33,12 @@ class ThreadPool {
           camera_capacity_(camera_capacity(capacity, context.settings.split_depth)),
           records_(capacity),
           stages_(context, capacity, thread) {}
+
+    /// The memory of one of these.
+    static std::size_t bytes(const RenderContext<Scalar>& context, std::size_t capacity) {
+        return RayColumns<needs, Scalar>::bytes(capacity) +
+               Stages<needs, Real, Work, splitting>::bytes(context, capacity);
+    }
 
     /// Brings in paths, and makes room for them by rounds.
     void add(CameraPaths paths) {
@@ -75,83 +79,149 @@ class ThreadPool {
 
 /// The loop over the image of per-thread pools: work items are handed out by OpenMP, as to the recursive engine.
 template <SceneNeeds needs, class Real, class Work, Splitting splitting>
-RenderReport render_thread_pools(const RenderContext<ScalarOf<Real>>& context, std::size_t capacity,
-                                 ThreadRounds& rounds) {
-    const auto& scene = context.scene;
-    const RenderSettings& settings = context.settings;
-    const WorkItems items(scene.width, scene.height, settings.grain);
-    return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
-        ThreadPool<needs, Real, Work, splitting> pool(context, capacity, omp_get_thread_num());
-        ProgressBatch progress(settings.progress);
-        const auto add = [&](const CameraPaths& paths) {
-            pool.add(paths);
-            progress.add(paths.left());
-        };
+class ThreadPoolSession : public PoolSession<ScalarOf<Real>> {
+    using Base = PoolSession<ScalarOf<Real>>;
+    using Pool = ThreadPool<needs, Real, Work, splitting>;
+
+  public:
+    ThreadPoolSession(const CompiledScene<ScalarOf<Real>>& scene, const RenderSettings& settings,
+                      const PoolSettings& pool, Framebuffer& framebuffer)
+        : Base(scene, settings, pool, framebuffer, record_bytes<needs, ScalarOf<Real>>()) {
+        this->check_memory(static_cast<std::size_t>(settings.threads) * Pool::bytes(this->context(), this->capacity()));
+        pools_.resize(static_cast<std::size_t>(settings.threads));
+        this->finish_setup([&](int thread) {
+            pools_[static_cast<std::size_t>(thread)] =
+                std::make_unique<Pool>(this->context(), this->capacity(), thread);
+        });
+    }
+
+  private:
+    RenderReport run(const RenderUnit& unit) override {
+        const auto& scene = this->context().scene;
+        const RenderSettings& settings = this->context().settings;
+        const double start = omp_get_wtime();
+        const WorkItems items(scene.width, scene.height, settings.grain, unit.pixels);
+        RenderReport setup;
+        if (unit.pixels != nullptr) count_setup(settings, start, settings.threads, setup);
+
+        RenderReport report = run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
+            const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+            Pool& pool = *pools_[thread];
+            pool.stages().begin();
+            ProgressBatch progress(settings.progress);
+            const auto add = [&](const CameraPaths& paths) {
+                pool.add(paths);
+                progress.add(paths.left());
+            };
 
 #pragma omp for schedule(runtime) nowait
-        for (std::int64_t item = 0; item < items.count(); ++item) {
-            const PixelRange range = items.range(item);
-            if (settings.pixels == nullptr) {
-                add({range, scene.width, settings.first_sample, settings.end_sample});
-            } else {
-                for (std::int64_t y = range.y_begin; y < range.y_end; ++y) {
-                    const auto line = chosen_between(*settings.pixels, y * scene.width + range.x_begin,
-                                                     y * scene.width + range.x_end);
-                    add({line, scene.width, settings.first_sample, settings.end_sample});
+            for (std::int64_t item = 0; item < items.count(); ++item) {
+                if (unit.pixels == nullptr) {
+                    add({items.range(item), scene.width, unit.first_sample, unit.end_sample});
+                } else {
+                    items.for_each_line(item, [&](const LinePixels& line) {
+                        add({{line.list, static_cast<std::size_t>(line.count)},
+                             scene.width,
+                             unit.first_sample,
+                             unit.end_sample});
+                    });
                 }
             }
-        }
-        pool.drain();
-        pool.stages().log().finish();
-        pool.stages().report(work, audit);
-        rounds[static_cast<std::size_t>(omp_get_thread_num())] = pool.stages().log().rounds();
-    });
-}
+            pool.drain();
+            pool.stages().log().finish();
+            pool.stages().report(work, audit);
+        });
+        report.add(setup);
+        return report;
+    }
+    [[nodiscard]] const std::vector<RoundWork>& rounds(std::size_t thread) const override {
+        return pools_[thread]->stages().log().rounds();
+    }
+
+    std::vector<std::unique_ptr<Pool>> pools_;  ///< by thread
+};
 
 /// The paper's pool: one for all threads, and a barrier after every round.
 template <SceneNeeds needs, class Real, class Work, Splitting splitting>
-RenderReport render_shared_pool(const RenderContext<ScalarOf<Real>>& context, SharedPool<needs, ScalarOf<Real>>& pool,
-                                ThreadRounds& rounds) {
-    const auto& scene = context.scene;
-    const RenderSettings& settings = context.settings;
-    const CameraPaths image(settings, scene.width, scene.height);
-    PathCounter camera(image.left());
+class SharedPoolSession : public PoolSession<ScalarOf<Real>> {
+    using Scalar = ScalarOf<Real>;
+    using Base = PoolSession<Scalar>;
+    using ThreadStages = Stages<needs, Real, Work, splitting>;
 
-    return run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
-        Stages<needs, Real, Work, splitting> stages(context, pool.batch(), omp_get_thread_num());
-        ProgressBatch progress(settings.progress);
+  public:
+    SharedPoolSession(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const PoolSettings& pool,
+                      Framebuffer& framebuffer)
+        : Base(scene, settings, pool, framebuffer, record_bytes<needs, Scalar>()) {
+        const std::size_t batch = std::clamp<std::size_t>(static_cast<std::size_t>(pool.batch),
+                                                          std::size_t{1} << settings.split_depth, this->capacity());
+        const PoolShape shape(this->capacity(), batch, settings.split_depth);
+        const auto threads = static_cast<std::size_t>(settings.threads);
+        this->check_memory(shared_pool_bytes<needs, Scalar>(pool.append, shape, settings.threads) +
+                           threads * ThreadStages::bytes(this->context(), shape.stride));
+        pool_ = make_shared_pool<needs, Scalar>(pool.append, this->capacity(), batch, settings.split_depth,
+                                                settings.threads);
+        stages_.resize(threads);
+        this->finish_setup([&](int thread) {
+            stages_[static_cast<std::size_t>(thread)] =
+                std::make_unique<ThreadStages>(this->context(), pool_->batch(), thread);
+        });
+    }
 
-        for (bool is_done = false; !is_done;) {
-            const bool takes_camera = pool.is_empty() || context.pool.refill == Refill::Regenerate;
+  private:
+    RenderReport run(const RenderUnit& unit) override {
+        const auto& scene = this->context().scene;
+        const RenderSettings& settings = this->context().settings;
+        const CameraPaths image(unit, scene.width, scene.height);
+        PathCounter camera(image.left());
+        RenderSettings loop = settings;
+        loop.schedule = this->context().pool.batch_schedule;
+
+        // Nothing in here may throw: the other threads would wait at a barrier for ever.
+        return run_threads(loop, [&](ThreadWork& work, SampleAudit& audit) noexcept {
+            const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+            SharedPool<needs, Scalar>& pool = *pool_;
+            ThreadStages& stages = *stages_[thread];
+            stages.begin();
+            ProgressBatch progress(settings.progress);
+
+            for (bool is_done = false; !is_done;) {
+                const bool takes_camera = pool.is_empty() || this->context().pool.refill == Refill::Regenerate;
 
 #pragma omp for schedule(runtime) nowait
-            for (std::int64_t b = 0; b < pool.batch_count(); ++b) {
-                stages.log().start_batch(b);
-                // Every record by one bounce; what survives goes on to the next round ...
-                const std::size_t survivors = stages.advance(pool.records(), pool.first(b), pool.count(b));
-                std::size_t end = stages.pass_on(pool, b, pool.first(b), survivors);
+                for (std::int64_t b = 0; b < pool.batch_count(); ++b) {
+                    stages.log().start_batch(b);
+                    // Every record by one bounce; what survives goes on to the next round ...
+                    const std::size_t survivors = stages.advance(pool.records(), pool.first(b), pool.count(b));
+                    std::size_t end = stages.pass_on(pool, b, pool.first(b), survivors);
 
-                // ... and camera rays take what room there is.
-                for (std::size_t room = takes_camera ? pool.room(b) : 0; room > 0;) {
-                    const PathCounter::Part part = camera.take(std::min(room, kCameraChunk));
-                    if (part.count == 0) break;
-                    const std::size_t made = stages.generate(pool.records(), end, image.part(part.begin, part.count));
-                    room -= std::min(room, made + stages.overflow_count());
-                    end = stages.pass_on(pool, b, end, made);
-                    progress.add(part.count);
+                    // ... and camera rays take what room there is.
+                    for (std::size_t room = takes_camera ? pool.room(b) : 0; room > 0;) {
+                        const PathCounter::Part part = camera.take(std::min(room, kCameraChunk));
+                        if (part.count == 0) break;
+                        const std::size_t made =
+                            stages.generate(pool.records(), end, image.part(part.begin, part.count));
+                        room -= std::min(room, made + stages.overflow_count());
+                        end = stages.pass_on(pool, b, end, made);
+                        progress.add(part.count);
+                    }
                 }
+                stages.wait();
+                stages.end_round(pool);
+                stages.wait();
+                is_done = pool.is_empty() && camera.is_done();
+                stages.wait();
+                if (thread == 0) stages.log().occupancy(pool.size(), Trace::Event::Kind::Counter);
+                stages.log().end_round();
             }
-            stages.wait();
-            stages.end_round(pool);
-            stages.wait();
-            is_done = pool.is_empty() && camera.is_done();
-            stages.wait();
-            if (omp_get_thread_num() == 0) stages.log().occupancy(pool.size(), Trace::Event::Kind::Counter);
-            stages.log().end_round();
-        }
-        stages.report(work, audit);
-        rounds[static_cast<std::size_t>(omp_get_thread_num())] = stages.log().rounds();
-    });
-}
+            stages.report(work, audit);
+        });
+    }
+    [[nodiscard]] const std::vector<RoundWork>& rounds(std::size_t thread) const override {
+        return stages_[thread]->log().rounds();
+    }
+
+    std::unique_ptr<SharedPool<needs, Scalar>> pool_;
+    std::vector<std::unique_ptr<ThreadStages>> stages_;  ///< by thread
+};
 
 }  // namespace raypool::wavefront

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "core/engine.h"
+
 namespace raypool::wavefront {
 
 /// Who owns a pool: one for all threads, with a barrier after every round, or one for each.
@@ -60,8 +62,15 @@ struct PoolSettings {
     Accumulator accumulator = Accumulator::OwnedInt64;
     std::int64_t capacity = 8192;  ///< records, of each pool; >= 1
     std::int64_t batch = 4096;     ///< records that a thread takes at a time from a shared pool
+    /// How the batches of a shared pool are handed out. They are few, so that a schedule meant for lines would fit ill.
+    LoopSchedule batch_schedule{LoopSchedule::Kind::Dynamic, 0};
 
     static constexpr std::int64_t kSharedCapacity = 65536;  ///< better for a shared pool, whose rounds end in barriers
 };
+
+/// Whether threads get parts of the image, and not batches of a pool that all share.
+constexpr bool loops_over_image(const PoolSettings& pool) {
+    return pool.scope == PoolScope::PerThread;
+}
 
 }  // namespace raypool::wavefront

@@ -58,6 +58,15 @@ class Stages {
                Deposits<Scalar>::bytes(std::max(most_records, kMostDeposits) + 2 * kRays);
     }
 
+    /// A unit of the render begins: what report() says is of this unit.
+    void begin() {
+        log_.begin();
+        converter_ = SampleConverter(context_.fixed);
+        work_ = {};
+        paths_ = segments_ = 0;
+        waited_s_ = 0;
+    }
+
     /// Brings `paths` into the pool from record `first` on, where there is room for all of them. Returns how many
     /// records that made: one each, or, with the fused camera stage, one for each that survives its first bounce.
     /// Records that splitting added wait in the overflow, here and in advance().
@@ -257,7 +266,7 @@ class Stages {
         const unsigned alive = mask_bits(out.is_alive && !is_deepest) & hits;
         RayRecord<Real> next = record;
         next.ray.origin = out.origin;
-        next.leaving_id = id_bits(id);
+        next.leaving_id = id_bits(out.leaving_id);
         next.step = step;
         if constexpr (splitting == Splitting::On) {
             const Uint32<Real> reflected = path_step::reflected_branch<Uint32<Real>>(step);

@@ -70,21 +70,21 @@ requires requires(Block b) {
 }
 RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const WideRays<Real>& rays, Hit<Real>& hit) {
     const std::int32_t id = block.id[lane];
-    const Mask<Real> is_leaving = as_mask<Real>(rays.leaving_id == Int<Real>(id));
-    const Vec3<Real> corner = lane_of<Real>(block.corner, lane);
+    const Mask<Real> is_leaving = as_mask<Real>(rays.leaving_id == Int<Real>(block.group[lane]));
+    const Vec3<Real> point = lane_of<Real>(block.point, lane);
     const Vec3<Real> normal = lane_of<Real>(block.normal, lane);
     const Ray<Real>& ray = rays.ray;
     Mask<Real> is_closer;
     Real t;
     if constexpr (in_box == InBox::Yes) {
-        t = quad_distance<Real>(ray.origin, ray.direction, corner, normal, lane_of<Real>(block.dual_u, lane),
-                                lane_of<Real>(block.dual_v, lane), is_leaving);
+        t = quad_distance<Real>(ray.origin, ray.direction, point, normal, lane_of<Real>(block.corner, lane),
+                                lane_of<Real>(block.dual_u, lane), lane_of<Real>(block.dual_v, lane), is_leaving);
         is_closer = closer<Real>(t, id, hit);
         if (none(is_closer)) return is_closer;
         is_closer = is_closer && is_inside_box<Real>(lane_of<Real>(block.low, lane), lane_of<Real>(block.high, lane),
                                                      ray.origin, rays.inverse, t);
     } else {
-        t = plane_distance<Real>(ray.origin, ray.direction, corner, normal, is_leaving);
+        t = plane_distance<Real>(ray.origin, ray.direction, point, normal, is_leaving);
         is_closer = closer<Real>(t, id, hit);
     }
     hit.t = select(is_closer, t, hit.t);

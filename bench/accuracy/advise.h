@@ -5,6 +5,10 @@
 /// promising combinations are chosen, and each is rendered at the size that is asked for; what they then predict is the
 /// advice. An error is the root mean square over channels and pixels against the converged image.
 ///
+/// What is promised holds for light that no pilot has found too: a variance, and what a limit of depth cuts off, count
+/// with their upper confidence limits (core/rare_events.h), which know how bright the scene's brightest light is. Where
+/// pilots of a bounded time find too little light for that, nothing is promised.
+///
 /// Noise falls with the root of the samples; of Sobol points with the slope that was measured. Bias is taken from pairs
 /// of images that share random numbers. Only float and a limit of depth have any: Sobol points, roulette and split
 /// paths have the right expectation by construction (and by test), so theirs is measured but not charged.
@@ -13,6 +17,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -25,6 +30,12 @@ namespace raypool::accuracy {
 struct Target {
     std::optional<double> error;    ///< RMSE, > 0: no more than this, in the least time
     std::optional<double> seconds;  ///< of the render, > 0: the least error in no more than this
+};
+
+/// Pilots have found too little light for a promise.
+class NothingPromised : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
 };
 
 struct AdviseOptions {
@@ -43,10 +54,19 @@ struct Pilot {
     std::vector<double> seconds;  ///< for such an image, seed by seed
     double slope = -1;            ///< of the MSE by samples: -1 for independent points
     Estimate bias;                ///< squared
+    /// What light that no pilot has found may add to the bias: radiance, taken to lie as evenly over the image as what
+    /// was found.
+    double unseen_bias = 0;
+    /// Squared error of an image of one sample a pixel of which a single one is as bright as the scene allows.
+    double greatest_share = 0;
 
+    /// Whether the pilot found so much light that its noise is known to a factor of two at least.
+    [[nodiscard]] bool is_noise_known() const;
+    /// The greatest expectation of the MSE due to chance, over that which was found.
+    [[nodiscard]] double most_noise(double samples) const;
     [[nodiscard]] double noise(double samples) const;        ///< MSE due to chance
-    [[nodiscard]] double most_error(double samples) const;   ///< RMSE that 39 of 40 images stay below
-    [[nodiscard]] double least_error(double samples) const;  ///< and above
+    [[nodiscard]] double most_error(double samples) const;   ///< RMSE that 39 of 40 images stay below, at least
+    [[nodiscard]] double least_error(double samples) const;  ///< RMSE that 39 of 40 stay above
     [[nodiscard]] double error(double samples) const;        ///< RMSE to be expected
     [[nodiscard]] double seconds_of(double samples) const;   ///< median
     [[nodiscard]] double bias_squared() const;               ///< what is charged
@@ -54,10 +74,11 @@ struct Pilot {
 
 /// One change to the trusted configuration, or to the one named, and what it does.
 struct Simplification {
-    std::string text;  ///< "float instead of double"
-    Estimate bias;     ///< squared
-    double time = 1;   ///< of a sample, over that of the unchanged
-    double noise = 1;  ///< squared error of a sample, over that of the unchanged
+    std::string text;        ///< "float instead of double"
+    Estimate bias;           ///< squared
+    double unseen_bias = 0;  ///< Pilot's
+    double time = 1;         ///< of a sample, over that of the unchanged
+    double noise = 1;        ///< squared error of a sample, over that of the unchanged
 };
 
 /// A configuration with the samples that meet the target.
@@ -85,7 +106,8 @@ std::int64_t most_pilots();
 /// The samples with which a pilot's configuration meets the target, at least 1; nothing where it cannot.
 std::optional<std::int64_t> samples_for(const Pilot& pilot, const Target& target);
 
-/// The scene has the size that the image shall have. Throws InputError for a target that nothing meets.
+/// The scene has the size that the image shall have. Throws InputError for a target that nothing meets, and
+/// NothingPromised where pilots cannot tell.
 Advice advise(const Scene& scene, const Target& target, const AdviseOptions& options);
 
 }  // namespace raypool::accuracy

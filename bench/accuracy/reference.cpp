@@ -41,6 +41,7 @@ void Reference::open() {
     const FixedPoint fixed = FixedPoint::make(half_spp_, scene_->in_double.max_radiance);
     for (std::size_t i = 0; i < kReferenceSeeds.size(); ++i)
         halves_.push_back({{{"reference", key()}, {"half", i == 0 ? "a" : "b"}},
+                           half_spp_,
                            {},
                            {},
                            0,

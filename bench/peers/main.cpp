@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <span>
 #include <string>
 
 #include <embree3/rtcore_config.h>
@@ -15,8 +14,9 @@
 #include "core/environment.h"
 #include "core/error.h"
 #include "core/image_file.h"
-#include "core/output_file.h"
+#include "core/json_file.h"
 #include "core/scene_reader.h"
+#include "core/text.h"
 
 namespace {
 
@@ -80,12 +80,11 @@ int run(int argc, char** argv) {
     const PeerReport report = render_embree(scene, settings, image);
     const auto paths = static_cast<double>(report.paths);
     fmt::print("{}: {} x {}, {} spp, embree {}: {:.3f} M paths, {:.3f} segments a path, {:.3f} s: {:.3f} M paths/s\n",
-               scene.name, scene.width, scene.height, settings.spp, RTC_VERSION_STRING, paths * 1e-6,
+               printable(scene.name), scene.width, scene.height, settings.spp, RTC_VERSION_STRING, paths * 1e-6,
                static_cast<double>(report.segments) / paths, report.seconds, paths / report.seconds * 1e-6);
     if (!output.empty()) write_image(output, image, {});
     if (!json_file.empty()) {
-        const std::string text = to_json(scene, settings, report).dump(2) + "\n";
-        write_whole(json_file, std::as_bytes(std::span(text)));
+        write_json(json_file, to_json(scene, settings, report));
     }
     return 0;
 }
@@ -96,10 +95,10 @@ int main(int argc, char** argv) {
     try {
         return run(argc, argv);
     } catch (const InputError& error) {
-        fmt::print(stderr, "raypool_peer_embree: {}\n", error.what());
+        fmt::print(stderr, "raypool_peer_embree: {}\n", printable(error.what()));
         return 2;
     } catch (const std::exception& error) {
-        fmt::print(stderr, "raypool_peer_embree: {}\n", error.what());
+        fmt::print(stderr, "raypool_peer_embree: {}\n", printable(error.what()));
         return 1;
     }
 }

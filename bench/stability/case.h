@@ -54,6 +54,7 @@ const Case& find_case(const std::string& id);
 // The families, each in the file of its name.
 std::vector<Case> sphere_cases();
 std::vector<Case> leaving_cases();
+std::vector<Case> coincidence_cases();
 std::vector<Case> box_cases();
 std::vector<Case> motion_cases();
 std::vector<Case> scattering_cases();

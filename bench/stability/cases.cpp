@@ -13,9 +13,9 @@ const Method& Case::method(const std::string& name) const {
 const std::vector<Case>& all_cases() {
     static const std::vector<Case> kCases = [] {
         std::vector<Case> all;
-        for (const auto& family :
-             {sphere_cases(), leaving_cases(), box_cases(), motion_cases(), scattering_cases(), glass_cases(),
-              path_cases(), sum_cases(), random_cases(), texture_cases(), size_cases(), flat_cases(), image_cases()})
+        for (const auto& family : {sphere_cases(), leaving_cases(), coincidence_cases(), box_cases(), motion_cases(),
+                                   scattering_cases(), glass_cases(), path_cases(), sum_cases(), random_cases(),
+                                   texture_cases(), size_cases(), flat_cases(), image_cases()})
             all.insert(all.end(), family.begin(), family.end());
         return all;
     }();

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "recursive/engine.h"
 
 namespace raypool::stability {
@@ -113,6 +115,25 @@ Scene huge_scene() {
     return b.scene;
 }
 
+/// A slope, a rug of the same colour in it, and balls on it that are listed twice.
+Scene coincident_scene() {
+    Builder b(36);
+    const auto floor = b.diffuse(Vector3d(0.75, 0.75, 0.72));
+    const auto red = b.diffuse(Vector3d(0.8, 0.35, 0.3));
+    const auto glass = b.glass();
+    const Vector3d u = Vector3d(0.96, 0.28, 0.03).normalized();
+    const Vector3d n = Vector3d(-0.27, 0.93, 0.21).cross(u).cross(u).normalized() * -1;
+    const Vector3d v = n.cross(u);
+    b.scene.quads.push_back({-6 * u - 6 * v, 12 * v, 12 * u, floor});
+    b.scene.quads.push_back({-1.9 * u - 0.2 * v, 1.7 * u + 0.5 * v, 1.3 * v - 0.4 * u, floor});
+    for (int i = 0; i < 2; ++i) {
+        b.sphere(0.9 * u - 0.3 * v + 0.7 * n, 0.7, red);
+        b.sphere(0.3 * u + 1.4 * v + 0.45 * n, 0.45, glass);
+    }
+    b.look({0.5, 2.6, 5.2}, {0.1, 0.3, 0});
+    return b.scene;
+}
+
 /// A floor around the origin.
 Scene checker_scene() {
     Builder b(40);
@@ -149,6 +170,11 @@ const std::vector<Failure>& all_failures() {
          "behind is "
          "seen upright. Ours takes the exact second root, and the ball turns the wall upside down.",
          NaiveVariant::LeastDistance, glass_scene()},
+        {"coincidence", "2f", "Coincidence: a rug in a slope, and balls listed twice",
+         "The naive method knows which shape a ray leaves, and meets the other shape of the same surface at once: half "
+         "of all rays are held, so that the rug and the ball are dark, and glass is none. Ours counts "
+         "coincident surfaces once.",
+         NaiveVariant::IdAlone, coincident_scene()},
         {"ground", "1c", "Ground: the quadratic of the books, on a sphere of four million units",
          "h^2 - a c of the naive method cancels, so the ground is met too early or too late, in steps: the checker is "
          "torn, "
@@ -165,10 +191,12 @@ const std::vector<Failure>& all_failures() {
 FailureImages render_failure(NaiveVariant variant, const Scene& scene, const RenderSettings& settings) {
     const CompiledScene<float> narrow = compile<float>(scene);
     const CompiledScene<double> wide = compile<double>(scene);
+    const bool is_id_alone = variant == NaiveVariant::IdAlone;
+    const CompiledScene<float> naive = is_id_alone ? compile<float>(scene, no_coincidence(scene)) : narrow;
     const recursive::IterativeEngine engine;
     const double most = narrow.max_radiance;
     return {render(
-                scene, settings, [&](Framebuffer& f) { render_naively(variant, narrow, settings, f); }, most),
+                scene, settings, [&](Framebuffer& f) { render_naively(variant, naive, settings, f); }, most),
             render(
                 scene, settings, [&](Framebuffer& f) { engine.render(narrow, settings, f); }, most),
             render(

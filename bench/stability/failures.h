@@ -15,7 +15,8 @@ namespace raypool::stability {
 enum class NaiveVariant : std::uint8_t {
     LeastDistance = 1,  ///< a hit closer than 1e-3 does not count, and a ray does not know what it leaves
     HalfB = 2,          ///< the quadratic of the books
-    Truncation = 3      ///< checkers by rounding towards zero
+    Truncation = 3,     ///< checkers by rounding towards zero
+    IdAlone = 4         ///< methods are ours, but no shapes are held to coincide: a ray leaves one shape, by its id
 };
 
 /// The iterative engine in single precision, compiled for a variant and for what the scenes below need.

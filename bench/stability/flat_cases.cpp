@@ -150,20 +150,17 @@ std::vector<Case> flat_cases() {
                      {"ours, double", Kind::Ours, grazing_plane<double, OurPlane>}},
          .held = 3,
          .limit = "direction . normal cancels to a part of an ulp over the sine: the wider type is the cure"});
-    cases.push_back(
-        {.id = "quad-seam",
-         .row = "+",
-         .parameter = "distance of the ray's origin, edges about 1",
-         .values = {1e0, 1e1, 1e2, 1e3},
-         .measure = "rays at the seam of two quads that pass between them, share",
-         .tolerance = 0,
-         .symptom = "bright or dark dots along the edges of a room",
-         .samples = 100'000,
-         .methods = {{"coordinates in [0, 1], float", Kind::Naive, seam<float, false>},
-                     {"ours, float", Kind::Ours, seam<float, true>},
-                     {"ours, double", Kind::Ours, seam<double, true>}},
-         .held = 1,
-         .limit = "a quad reaches beyond its edges by a part of them, and the rounding of a far hit is more"});
+    cases.push_back({.id = "quad-seam",
+                     .row = "+",
+                     .parameter = "distance of the ray's origin, edges about 1",
+                     .values = {1e0, 1e1, 1e2, 1e3},
+                     .measure = "rays at the seam of two quads that pass between them, share",
+                     .tolerance = 0,
+                     .symptom = "bright or dark dots along the edges of a room",
+                     .samples = 100'000,
+                     .methods = {{"coordinates in [0, 1], float", Kind::Naive, seam<float, false>},
+                                 {"ours, float", Kind::Ours, seam<float, true>},
+                                 {"ours, double", Kind::Ours, seam<double, true>}}});
     return cases;
 }
 

@@ -15,8 +15,9 @@ struct Methods<1> {
         return naive::haines_distance<Real>(origin, direction, center, radius, Real(naive::kBookEpsilon));
     }
     template <class Real>
-    RAYPOOL_INLINE static Mask<Real> is_odd_cell(const Vec3<Real>& p, const Split<Real>& scale) {
-        return raypool::is_odd_cell<Real>(p, scale);
+    RAYPOOL_INLINE static Mask<Real> is_odd_cell(const Vec3<Real>& p, const Vec3<Real>& outward,
+                                                 const Split<Real>& scale) {
+        return raypool::is_odd_cell<Real>(p, outward, scale);
     }
 };
 
@@ -31,8 +32,9 @@ struct Methods<2> {
         return select(is_leaving, second, first);
     }
     template <class Real>
-    RAYPOOL_INLINE static Mask<Real> is_odd_cell(const Vec3<Real>& p, const Split<Real>& scale) {
-        return raypool::is_odd_cell<Real>(p, scale);
+    RAYPOOL_INLINE static Mask<Real> is_odd_cell(const Vec3<Real>& p, const Vec3<Real>& outward,
+                                                 const Split<Real>& scale) {
+        return raypool::is_odd_cell<Real>(p, outward, scale);
     }
 };
 
@@ -45,7 +47,7 @@ struct Methods<3> {
         return raypool::sphere_distance<Real>(origin, direction, center, radius, is_leaving);
     }
     template <class Real>
-    RAYPOOL_INLINE static Mask<Real> is_odd_cell(const Vec3<Real>& p, const Split<Real>& scale) {
+    RAYPOOL_INLINE static Mask<Real> is_odd_cell(const Vec3<Real>& p, const Vec3<Real>&, const Split<Real>& scale) {
         Real sum(0);
         for (int i = 0; i < 3; ++i) sum = sum + naive::truncated_parity<Real>(p[i], scale.high);
         return sum == Real(1) || sum == Real(3);
@@ -68,7 +70,9 @@ constexpr SceneNeeds kNeeds{false, false, true, false, false,
 template <NaiveVariant variant>
 RenderReport render(const CompiledScene<float>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {
     using recursive::Form;
-    return recursive::render<Form::Iterative, kNeeds<variant>, float, NoWorkCount>(scene, settings, framebuffer);
+    return render_whole(
+        *recursive::begin<Form::Iterative, kNeeds<variant>, float, NoWorkCount>(scene, settings, framebuffer),
+        settings);
 }
 
 }  // namespace
@@ -80,6 +84,8 @@ RenderReport render_naively(NaiveVariant variant, const CompiledScene<float>& sc
             return render<NaiveVariant::LeastDistance>(scene, settings, framebuffer);
         case NaiveVariant::HalfB:
             return render<NaiveVariant::HalfB>(scene, settings, framebuffer);
+        case NaiveVariant::IdAlone:
+            return render<NaiveVariant::IdAlone>(scene, settings, framebuffer);
         case NaiveVariant::Truncation:
             break;
     }

@@ -85,14 +85,20 @@ double plane_flips(double height, std::int64_t rays, IsOdd is_odd) {
     return share(flips, rays);
 }
 bool is_odd_in_space(const Vec3<float>& p) {
-    return is_odd_cell<float>(p, split_scale<float>());
+    return is_odd_cell<float>(p, vec3<float>(0, 0, 0), split_scale<float>());
+}
+/// On the side of the surface that looks up.
+bool is_odd_above(const Vec3<float>& p) {
+    const float up = outward_part<float>(p[1], 0, split_scale<float>(), 1);
+    return is_odd_cell<float>(vec3<float>(p[0], 0, p[2]), vec3<float>(0, up, 0), split_scale<float>());
 }
 bool is_odd_moved(const Vec3<float>& p) {
-    return is_odd_cell<float>(vec3<float>(p[0], p[1] + 0.5F / static_cast<float>(kScale), p[2]), split_scale<float>());
+    const Vec3<float> moved = vec3<float>(p[0], p[1] + 0.5F / static_cast<float>(kScale), p[2]);
+    return is_odd_cell<float>(moved, vec3<float>(0, 0, 0), split_scale<float>());
 }
 bool is_odd_in_plane(const Vec3<float>& p) {
     const auto [u, v] = plane_coordinates<float>(p, vec3<float>(0, 0, 0), vec3<float>(1, 0, 0), vec3<float>(0, 0, 1));
-    return is_odd_cell<float>(vec3<float>(u, v, 0), split_scale<float>());
+    return is_odd_cell<float>(vec3<float>(u, v, 0), vec3<float>(0, 0, 0), split_scale<float>());
 }
 
 template <class Checker>
@@ -154,6 +160,7 @@ std::vector<Case> texture_cases() {
                      .symptom = "noise of both colours all over the floor",
                      .samples = 50'000,
                      .methods = {{"3-D checker, y = 0 a boundary", Kind::Naive, flips_of(is_odd_in_space)},
+                                 {"ours, put back and on the outward side", Kind::Ours, flips_of(is_odd_above)},
                                  {"ours, moved by half a cell (offset)", Kind::Ours, flips_of(is_odd_moved)},
                                  {"ours, surface (u, v)", Kind::Ours, flips_of(is_odd_in_plane)}}});
     return cases;

@@ -89,18 +89,20 @@ Made make_adaptive(const Engine& engine, const CompiledScene<float>& scene, Rend
     return made;
 }
 
-/// An engine that keeps what threads did in each of its renders.
+/// An engine that keeps what threads did in each unit of its renders.
 class PassLog : public Engine {
   public:
     explicit PassLog(const Engine& engine) : engine_(engine) {}
     [[nodiscard]] std::string name() const override { return engine_.name(); }
-    RenderReport render(const CompiledScene<float>& scene, const RenderSettings& settings,
-                        Framebuffer& framebuffer) const override {
-        return log(engine_.render(scene, settings, framebuffer));
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene,
+                                                       const RenderSettings& settings,
+                                                       Framebuffer& framebuffer) const override {
+        return std::make_unique<Session>(passes_, engine_.begin(scene, settings, framebuffer));
     }
-    RenderReport render(const CompiledScene<double>& scene, const RenderSettings& settings,
-                        Framebuffer& framebuffer) const override {
-        return log(engine_.render(scene, settings, framebuffer));
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<double>& scene,
+                                                       const RenderSettings& settings,
+                                                       Framebuffer& framebuffer) const override {
+        return std::make_unique<Session>(passes_, engine_.begin(scene, settings, framebuffer));
     }
 
     /// Segments that passes take when their slowest threads are waited for, over the segments that there are for a
@@ -117,7 +119,21 @@ class PassLog : public Engine {
     }
 
   private:
-    const RenderReport& log(RenderReport report) const { return passes_.emplace_back(std::move(report)); }
+    class Session : public RenderSession {
+      public:
+        Session(std::vector<RenderReport>& passes, std::unique_ptr<RenderSession> session)
+            : passes_(passes), session_(std::move(session)) {
+            report_ = session_->report();
+        }
+
+      private:
+        RenderReport render(const RenderUnit& unit) override { return passes_.emplace_back(session_->add(unit)); }
+        RenderReport collect() override { return session_->merge(); }
+
+        std::vector<RenderReport>& passes_;
+        std::unique_ptr<RenderSession> session_;
+    };
+
     const Engine& engine_;
     mutable std::vector<RenderReport> passes_;
 };
@@ -154,11 +170,12 @@ class Adaptive : public Study {
                 {"seed", ColumnType::Count, "of all random numbers"},
                 {"rounds", ColumnType::Count, "of estimating and rendering"},
                 {"samples", ColumnType::Real, "for each pixel, on average"},
-                {"seconds", ColumnType::Real, "wall clock of the parallel regions and of the estimates between them"},
+                {"seconds", ColumnType::Real,
+                 "wall clock of the render: setup, loops, last passes; and of the estimates between them"},
                 {"segments", ColumnType::Count, "rays traced"},
                 {"rmse_estimate", ColumnType::Real, "what the render itself takes its error for"},
-                {"mse", ColumnType::Real, "squared error against the reference, less the reference's noise"},
-                {"shift", ColumnType::Real, "mean of the image over that of the reference, less 1"},
+                {"mse", ColumnType::Signed, "squared error against the reference, less the reference's noise"},
+                {"shift", ColumnType::Signed, "mean of the image over that of the reference, less 1"},
                 {"load", ColumnType::Real, "segments of the busiest threads of all passes over fair shares"},
                 {"hash", ColumnType::Text, "of the sums"}};
     }

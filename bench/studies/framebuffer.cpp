@@ -60,25 +60,29 @@ Row cells(const StudyScene& scene, const RenderSettings& settings, const char* l
 /// Arguments of `raypool render`.
 std::vector<std::string> render_arguments(const std::string& scene, std::int64_t width, const RenderSettings& settings,
                                           const PoolSettings& pool) {
-    return {scene,
-            "--engine=wavefront",
-            fmt::format("--width={}", width),
-            fmt::format("--spp={}", settings.end_sample),
-            fmt::format("--depth={}", settings.depth),
-            fmt::format("--seed={}", settings.seed),
-            fmt::format("--threads={}", settings.threads),
-            "--schedule=" + to_string(settings.schedule),
-            "--grain=" + to_string(settings.grain),
-            fmt::format("--pool-scope={}", to_string(pool.scope)),
-            fmt::format("--refill={}", to_string(pool.refill)),
-            fmt::format("--stage-width={}", to_string(pool.width)),
-            fmt::format("--intersect={}", to_string(pool.intersection)),
-            fmt::format("--camera={}", to_string(pool.camera)),
-            fmt::format("--sort={}", to_string(pool.sort)),
-            fmt::format("--append={}", to_string(pool.append)),
-            fmt::format("--accumulator={}", to_string(pool.accumulator)),
-            fmt::format("--pool-rays={}", pool.capacity),
-            fmt::format("--pool-batch={}", pool.batch)};
+    std::vector<std::string> arguments{scene,
+                                       "--engine=wavefront",
+                                       fmt::format("--width={}", width),
+                                       fmt::format("--spp={}", settings.end_sample),
+                                       fmt::format("--depth={}", settings.depth),
+                                       fmt::format("--seed={}", settings.seed),
+                                       fmt::format("--threads={}", settings.threads),
+                                       fmt::format("--pool-scope={}", to_string(pool.scope)),
+                                       fmt::format("--refill={}", to_string(pool.refill)),
+                                       fmt::format("--stage-width={}", to_string(pool.width)),
+                                       fmt::format("--intersect={}", to_string(pool.intersection)),
+                                       fmt::format("--camera={}", to_string(pool.camera)),
+                                       fmt::format("--sort={}", to_string(pool.sort)),
+                                       fmt::format("--accumulator={}", to_string(pool.accumulator)),
+                                       fmt::format("--pool-rays={}", pool.capacity)};
+    if (loops_over_image(pool)) {
+        arguments.push_back("--schedule=" + to_string(settings.schedule));
+        arguments.push_back("--grain=" + to_string(settings.grain));
+    } else {
+        arguments.push_back(fmt::format("--append={}", to_string(pool.append)));
+        arguments.push_back(fmt::format("--pool-batch={}", pool.batch));
+    }
+    return arguments;
 }
 
 Case time_case(const Pair& pair, const char* layout, const std::shared_ptr<const StudyScene>& scene,
@@ -91,12 +95,13 @@ Case time_case(const Pair& pair, const char* layout, const std::shared_ptr<const
 }
 
 /// Rows of counts have no time: counting disturbs it.
-Row count_row(const char* engine, const StudyScene& scene, const RenderSettings& settings, const std::string& hash,
+Row count_row(const Pair& pair, const StudyScene& scene, const RenderSettings& settings, const std::string& hash,
               const Row& behind) {
-    Row row{engine,
+    const bool has_loop = loops_over_image(pair.pool);
+    Row row{pair.name,
             settings.threads,
-            to_string(settings.schedule),
-            to_string(settings.grain),
+            has_loop ? Value(to_string(settings.schedule)) : Value(),
+            has_loop ? Value(to_string(settings.grain)) : Value(),
             scene.compiled.width,
             nullptr,
             nullptr,
@@ -114,7 +119,7 @@ Case hardware_case(const Pair& pair, const char* layout, const std::shared_ptr<c
         const auto counts = count_by_hardware(
             [&] { hash = measure(wavefront::WavefrontEngine(in_layout(pair, layout)), *scene, settings).hash; });
         return {
-            count_row(pair.name, *scene, settings, hash,
+            count_row(pair, *scene, settings, hash,
                       cells(*scene, settings, layout, "hardware counters", "render", counts.value_or(CacheCounts{})))};
     };
     return {fmt::format("counters: {}, {}, width {}, {} spp", pair.name, layout, scene->compiled.width,
@@ -128,7 +133,7 @@ Case cachegrind_case(const Pair& pair, const char* layout, const std::string& fi
         const Cachegrind found =
             run_cachegrind(render_arguments(file, scene->compiled.width, settings, in_layout(pair, layout)));
         const auto row = [&](const char* part, const CacheCounts& counts) {
-            return count_row(pair.name, *scene, settings, found.hash,
+            return count_row(pair, *scene, settings, found.hash,
                              cells(*scene, settings, layout, "cachegrind", part, counts));
         };
         return {row("render", found.rendering), row("accumulate", found.accumulating)};

@@ -146,7 +146,8 @@ void add_notes(Summary& summary, const Table& counted) {
     const long second_level = sysconf(_SC_LEVEL2_CACHE_SIZE);
     if (second_level > 0) summary.notes.push_back(fmt::format("Second-level cache here: {} KiB.", second_level / 1024));
     summary.notes.push_back(
-        "Time: the seconds of the parallel region; putting planes together at the end of a render is not in them.");
+        "Time: of the whole render, with making the planes and putting them together at its end. Not in it for any "
+        "layout: the framebuffer's own making.");
     if (counted.is_empty()) return;
     if (counted.distinct("source").front() == "cachegrind")
         summary.notes.push_back(fmt::format(

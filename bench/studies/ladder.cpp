@@ -74,7 +74,7 @@ Case rate_case(const NamedEngine& engine, const std::shared_ptr<const StudyScene
                const RenderSettings& settings, int repeats) {
     const auto run = [engine, scene, settings]() -> std::vector<Row> {
         const Measured measured = measure(*engine.engine, *scene, settings);
-        Row row = render_row(engine.name, *scene, settings, measured);
+        Row row = render_row(engine.name, *engine.engine, *scene, settings, measured);
         row.insert(row.end(), {measured.report.segments(), "off"});
         for (const Value& part : no_parts()) row.push_back(part);
         return {row};
@@ -86,8 +86,9 @@ Case split_case(const wavefront::Rung& rung, const std::shared_ptr<const StudySc
                 int repeats) {
     settings.log_rounds = true;
     const auto run = [rung, scene, settings]() -> std::vector<Row> {
-        const Measured measured = measure(wavefront::WavefrontEngine(rung.pool), *scene, settings);
-        Row row = render_row(rung.name, *scene, settings, measured);
+        const wavefront::WavefrontEngine engine(rung.pool);
+        const Measured measured = measure(engine, *scene, settings);
+        Row row = render_row(rung.name, engine, *scene, settings, measured);
         row.insert(row.end(), {measured.report.segments(), "on"});
         for (const Value& part : parts_of_pool(measured.report, scene->compiled.needs, rung.pool)) row.push_back(part);
         return {row};

@@ -10,7 +10,8 @@
 #include "bench/studies/runner.h"
 #include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
-#include "wavefront/settings.h"
+#include "wavefront/engine.h"
+#include "wavefront/ladder.h"
 
 namespace raypool::studies {
 
@@ -88,8 +89,11 @@ class Load : public Study {
                 replayed.push_back(way);
             }
         }
-        for (const NamedEngine& rung : ladder_engines(settings.threads))
-            add("pool", rung, {rung.name.c_str(), "line", "static,1"});
+        for (wavefront::Rung& rung : wavefront::ladder(settings.threads)) {
+            rung.pool.batch_schedule = parse_schedule("static,1");  // so that counts are the same in every run
+            add("pool", {rung.name, std::make_shared<wavefront::WavefrontEngine>(rung.pool)},
+                {rung.name, "line", "static,1"});
+        }
         add("pool", fused_pool(), {"fused, lines, static", "line", "static"});
         add("pool", fused_pool(), {"fused, pixels, static,1", "pixel", "static,1"});
         cases.push_back({"replayed", "", 1, [=, this] { return replay_ways(*scene, settings, replayed); }});

@@ -27,23 +27,25 @@ constexpr int kLeastRepeats = 3;  ///< that have a spread worth the name
 /// One of the functions of needs_engines.h as an engine.
 class FeatureEngine : public Engine {
   public:
-    explicit FeatureEngine(RenderFunction function) : function_(function) {}
+    explicit FeatureEngine(BeginFunction function) : function_(function) {}
     [[nodiscard]] std::string name() const override { return "compiled for a feature"; }
-    RenderReport render(const CompiledScene<float>& scene, const RenderSettings& settings,
-                        Framebuffer& framebuffer) const override {
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene,
+                                                       const RenderSettings& settings,
+                                                       Framebuffer& framebuffer) const override {
         return function_(scene, settings, framebuffer);
     }
-    RenderReport render(const CompiledScene<double>& /*scene*/, const RenderSettings& /*settings*/,
-                        Framebuffer& /*framebuffer*/) const override {
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<double>& /*scene*/,
+                                                       const RenderSettings& /*settings*/,
+                                                       Framebuffer& /*framebuffer*/) const override {
         throw InputError("study needs: these kernels are compiled for single precision only");
     }
 
   private:
-    RenderFunction function_;
+    BeginFunction function_;
 };
 
-RenderFunction pool_render(std::size_t set) {
-    return set < kFrontSets ? pool_render_front(set) : pool_render_back(set);
+BeginFunction pool_begin(std::size_t set) {
+    return set < kFrontSets ? pool_begin_front(set) : pool_begin_back(set);
 }
 
 /// The scene as it is, and for the code that can do everything. It is one image.
@@ -102,7 +104,7 @@ class Needs : public Study {
                                         {scene_name, compiled, bytes(sizeof(float)), bytes(sizeof(double))}));
         };
         for (const auto& [engine, render] :
-             {std::pair{iterative_engine(), &iterative_render}, std::pair{fused_pool(), &pool_render}}) {
+             {std::pair{iterative_engine(), &iterative_begin}, std::pair{fused_pool(), &pool_begin}}) {
             add(engine, kPlain, kNothing, plain.own, {});
             for (std::size_t i = 0; i < kFeatureSets.size(); ++i)
                 add({engine.name, std::make_shared<FeatureEngine>(render(i))}, kPlain, kFeatureSets[i].name, plain.own,

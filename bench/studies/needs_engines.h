@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,19 +35,21 @@ inline constexpr auto kFeatureSets = [] {
     return sets;
 }();
 
-using RenderFunction = RenderReport (*)(const CompiledScene<float>&, const RenderSettings&, Framebuffer&);
+/// What Engine::begin() is.
+using BeginFunction = std::unique_ptr<RenderSession> (*)(const CompiledScene<float>&, const RenderSettings&,
+                                                         Framebuffer&);
 
 /// By kFeatureSets. The pool's are in two files, which compile slowly.
-RenderFunction iterative_render(std::size_t set);
-RenderFunction pool_render_front(std::size_t set);  ///< of the first half of the sets
-RenderFunction pool_render_back(std::size_t set);   ///< of the second half; `set` counts on from the first
+BeginFunction iterative_begin(std::size_t set);
+BeginFunction pool_begin_front(std::size_t set);  ///< of the first half of the sets
+BeginFunction pool_begin_back(std::size_t set);   ///< of the second half; `set` counts on from the first
 inline constexpr std::size_t kFrontSets = kFeatureSets.size() / 2;
 
-/// The function of each set from `first` on, `count` of them, by Render<needs>::run.
-template <template <SceneNeeds> class Render, std::size_t first, std::size_t count>
-RenderFunction render_of_set(std::size_t set) {
+/// The function of each set from `first` on, `count` of them, by Pick<needs>::begin.
+template <template <SceneNeeds> class Pick, std::size_t first, std::size_t count>
+BeginFunction begin_of_set(std::size_t set) {
     constexpr auto kFunctions = []<std::size_t... i>(std::index_sequence<i...>) {
-        return std::array<RenderFunction, count>{&Render<kFeatureSets[first + i].needs>::run...};
+        return std::array<BeginFunction, count>{&Pick<kFeatureSets[first + i].needs>::begin...};
     }
     (std::make_index_sequence<count>());
     return kFunctions[set - first];

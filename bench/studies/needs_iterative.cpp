@@ -7,17 +7,17 @@ namespace {
 
 template <SceneNeeds needs>
 struct Iterative {
-    static RenderReport run(const CompiledScene<float>& scene, const RenderSettings& settings,
-                            Framebuffer& framebuffer) {
+    static std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene, const RenderSettings& settings,
+                                                Framebuffer& framebuffer) {
         using recursive::Form;
-        return recursive::render<Form::Iterative, needs, float, NoWorkCount>(scene, settings, framebuffer);
+        return recursive::begin<Form::Iterative, needs, float, NoWorkCount>(scene, settings, framebuffer);
     }
 };
 
 }  // namespace
 
-RenderFunction iterative_render(std::size_t set) {
-    return render_of_set<Iterative, 0, kFeatureSets.size()>(set);
+BeginFunction iterative_begin(std::size_t set) {
+    return begin_of_set<Iterative, 0, kFeatureSets.size()>(set);
 }
 
 }  // namespace raypool::studies

@@ -8,11 +8,11 @@ namespace raypool::studies {
 
 template <SceneNeeds needs>
 struct FusedPool {
-    static RenderReport run(const CompiledScene<float>& scene, const RenderSettings& settings,
-                            Framebuffer& framebuffer) {
+    static std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene, const RenderSettings& settings,
+                                                Framebuffer& framebuffer) {
         using Real = Wide<float, stdx::native_simd<float>::size()>;
-        return wavefront::render<needs, Real, NoWorkCount, Splitting::Off>(scene, settings, wavefront::PoolSettings{},
-                                                                           framebuffer);
+        return wavefront::begin<needs, Real, NoWorkCount, Splitting::Off>(scene, settings, wavefront::PoolSettings{},
+                                                                          framebuffer);
     }
 };
 

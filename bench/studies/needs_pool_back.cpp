@@ -2,8 +2,8 @@
 
 namespace raypool::studies {
 
-RenderFunction pool_render_back(std::size_t set) {
-    return render_of_set<FusedPool, kFrontSets, kFeatureSets.size() - kFrontSets>(set);
+BeginFunction pool_begin_back(std::size_t set) {
+    return begin_of_set<FusedPool, kFrontSets, kFeatureSets.size() - kFrontSets>(set);
 }
 
 }  // namespace raypool::studies

@@ -2,8 +2,8 @@
 
 namespace raypool::studies {
 
-RenderFunction pool_render_front(std::size_t set) {
-    return render_of_set<FusedPool, 0, kFrontSets>(set);
+BeginFunction pool_begin_front(std::size_t set) {
+    return begin_of_set<FusedPool, 0, kFrontSets>(set);
 }
 
 }  // namespace raypool::studies

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/first_exception.h"
 #include "core/loop.h"
 #include "recursive/tracer.h"
 
@@ -133,11 +134,15 @@ PathCosts record_costs(const StudyScene& scene, const RenderSettings& settings) 
         throw InputError(fmt::format("--spp: the costs of {} x {} x {} paths do not fit; at most {} paths", costs.width,
                                      costs.height, costs.samples, kMostPaths));
     std::vector<LineLog> lines(static_cast<std::size_t>(compiled.height));
+    FirstException failure;  // what is recorded may take more memory than there is
 #pragma omp parallel for schedule(dynamic) num_threads(core_count())
     for (std::int64_t y = 0; y < compiled.height; ++y) {
-        const FlushDenormals flush;
-        lines[static_cast<std::size_t>(y)] = record_line(compiled, settings, y);
+        failure.run([&] {
+            const FlushDenormals flush;
+            lines[static_cast<std::size_t>(y)] = record_line(compiled, settings, y);
+        });
     }
+    failure.rethrow();
     for (LineLog& line : lines) {
         for (const std::uint32_t count : line.path_segments) costs.first.push_back(costs.first.back() + count);
         costs.tests.insert(costs.tests.end(), line.tests.begin(), line.tests.end());
@@ -188,11 +193,19 @@ CostFit fit_costs(const StudyScene& scene, const RenderSettings& settings, const
 
 std::vector<double> equal_work_seconds(const StudyScene& scene, const RenderSettings& settings, int threads) {
     std::vector<double> seconds(static_cast<std::size_t>(threads));
+    FirstException failure;
+    int count = 1;
 #pragma omp parallel num_threads(threads)
     {
-        const std::vector<double> lines = time_lines(scene, settings, 2);
-        seconds[static_cast<std::size_t>(omp_get_thread_num())] = std::accumulate(lines.begin(), lines.end(), 0.0);
+        const int thread = omp_get_thread_num();
+        if (thread == 0) count = omp_get_num_threads();
+        failure.run([&] {
+            const std::vector<double> lines = time_lines(scene, settings, 2);
+            seconds[static_cast<std::size_t>(thread)] = std::accumulate(lines.begin(), lines.end(), 0.0);
+        });
     }
+    failure.rethrow();
+    check_threads(count, threads);
     return seconds;
 }
 

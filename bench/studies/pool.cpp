@@ -85,7 +85,8 @@ Case pool_case(const std::string& axis, const Line& line, const std::shared_ptr<
 Case rounds_case(const Line& line, const std::shared_ptr<const StudyScene>& scene, RenderSettings settings) {
     settings.log_rounds = true;
     const auto run = [line, scene, settings]() {
-        const Measured measured = measure(wavefront::WavefrontEngine(line.pool), *scene, settings);
+        const wavefront::WavefrontEngine engine(line.pool);
+        const Measured measured = measure(engine, *scene, settings);
         std::vector<Row> rows;
         std::int64_t round = 0;
         std::int64_t depth = 0;
@@ -93,7 +94,7 @@ Case rounds_case(const Line& line, const std::shared_ptr<const StudyScene>& scen
             depth = work.records_in == 0 ? 0 : depth + 1;
             ++round;
             if (work.records_in == 0) continue;
-            Row row = render_row(line.name, *scene, settings, measured);
+            Row row = render_row(line.name, engine, *scene, settings, measured);
             for (const Value& cell : pool_cells("rounds", line.pool)) row.push_back(cell);
             row.insert(row.end(), {round, line.pool.refill == Refill::Drain ? Value(depth) : Value(nullptr),
                                    work.records_in, work.records_out, work.lanes});

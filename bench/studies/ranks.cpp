@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -76,23 +77,27 @@ class Recording {
         }
         return *costs_;
     }
-    /// Of a unit without work, measured: one pixel, for which a thread looks through the image.
+    /// Of a unit without work, measured: one pixel, in the session of all units. What a rank sets up once and merges
+    /// once is not in it.
     double unit_start() {
         if (unit_start_ > 0) return unit_start_;
-        const std::vector<std::uint32_t> one_pixel{0};
         RenderSettings settings = settings_;
-        settings.pixels = &one_pixel;
         settings.threads = 1;
-        std::vector<double> seconds;
-        for (int i = 0; i < 9; ++i)
-            seconds.push_back(measure(*recursive_engine().engine, *scene_, settings).report.seconds);
-        return unit_start_ = *std::min_element(seconds.begin(), seconds.end());
+        const CompiledScene<float>& scene = scene_->compiled;
+        Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(kUnits, scene.max_radiance));
+        const auto session = recursive_engine().engine->begin(scene, settings, framebuffer);
+        const std::vector<std::uint32_t> one_pixel{0};
+        unit_start_ = std::numeric_limits<double>::infinity();
+        for (std::int64_t i = 0; i < kUnits; ++i)
+            unit_start_ = std::min(unit_start_, session->add({i, i + 1, &one_pixel}).seconds);
+        return unit_start_;
     }
 
   private:
     std::shared_ptr<const StudyScene> scene_;
     RenderSettings settings_;
     int repeats_;
+    static constexpr std::int64_t kUnits = 9;
     std::unique_ptr<const UnitCosts> costs_;
     double unit_start_ = 0;
 };
@@ -137,8 +142,8 @@ class RankStudy : public Study {
             {"ranks", ColumnType::Count, "ranks of one thread, of one speed"},
             {"units", ColumnType::Count, "of work that are handed out"},
             {"ideal_s", ColumnType::Real, "an equal share of the work, s"},
-            {"last_units_s", ColumnType::Real, "lost because some have nothing while others end their last unit, s"},
-            {"questions_s", ColumnType::Real, "lost to asking for units and starting them, s"},
+            {"last_units_s", ColumnType::Signed, "lost because some have nothing while others end their last unit, s"},
+            {"questions_s", ColumnType::Signed, "lost to asking for units and starting them, s"},
             {"reduction_s", ColumnType::Real, "of the sums, s"},
             {"efficiency", ColumnType::Real, "ideal over all of it"},
             {"slow_efficiency", ColumnType::Real, "the same, with one rank at a quarter of the speed"}};
@@ -202,7 +207,8 @@ class RankStudy : public Study {
             "Supposed: {:.0f} GB/s and {:.0f} us a message, {:.0f} us until a question is seen, {:.0f} us to answer "
             "it, a "
             "reduction of {} bytes a pixel over a binary tree, one step after the other. Left out: reading the scene, "
-            "starting the ranks, and everything that makes equal processors unequal.",
+            "starting the ranks, what a rank sets up once for all its units, and everything that makes equal "
+            "processors unequal.",
             kBytesPerSecond * 1e-9, kLatency * 1e6, kLook * 1e6, kServe * 1e6, kPixelBytes));
         return summary;
     }

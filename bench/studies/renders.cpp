@@ -48,11 +48,20 @@ std::vector<NamedEngine> ladder_engines(int threads) {
     return engines;
 }
 
+void check_threads(int given, int asked) {
+    if (given != asked)
+        throw InputError(
+            fmt::format("--threads: OpenMP gave {} of {} threads (OMP_THREAD_LIMIT, or a parallel region "
+                        "around this one)",
+                        given, asked));
+}
+
 Measured measure(const Engine& engine, const StudyScene& scene, const RenderSettings& settings) {
     const CompiledScene<float>& compiled = scene.compiled;
     Framebuffer framebuffer(compiled.width, compiled.height,
                             FixedPoint::make(settings.end_sample, compiled.max_radiance));
     RenderReport report = engine.render(compiled, settings, framebuffer);
+    check_threads(static_cast<int>(report.threads.size()), settings.threads);
     return {std::move(report), framebuffer.hash()};
 }
 
@@ -66,23 +75,24 @@ std::string image_of(const StudyScene& scene, const RenderSettings& settings) {
 std::vector<Column> render_columns() {
     return {{"engine", ColumnType::Text, "who rendered"},
             {"threads", ColumnType::Count, "OpenMP threads"},
-            {"schedule", ColumnType::Text, "of the loop over the image or the pool"},
+            {"schedule", ColumnType::Text, "of the loop over the image; empty for a shared pool"},
             {"grain", ColumnType::Text, "what one iteration of that loop renders"},
             {"width", ColumnType::Count, "image width, pixels"},
-            {"seconds", ColumnType::Real, "wall clock of the parallel region"},
+            {"seconds", ColumnType::Real, "wall clock of the render: setup, loops, last pass"},
             {"mpaths_per_s", ColumnType::Real, "million paths a second"},
             {"load_max_over_mean", ColumnType::Real, "segments of the busiest thread over the mean"},
             {"waiting", ColumnType::Real, "part of the threads' time spent waiting for others"},
             {"hash", ColumnType::Text, "of the sums of the image"}};
 }
 
-Row render_row(const std::string& engine, const StudyScene& scene, const RenderSettings& settings,
+Row render_row(const std::string& name, const Engine& engine, const StudyScene& scene, const RenderSettings& settings,
                const Measured& measured) {
     const RenderReport& report = measured.report;
-    return {engine,
+    const auto of_loop = [&](const std::string& text) { return engine.loops_over_image() ? Value(text) : Value(); };
+    return {name,
             settings.threads,
-            to_string(settings.schedule),
-            to_string(settings.grain),
+            of_loop(to_string(settings.schedule)),
+            of_loop(to_string(settings.grain)),
             scene.compiled.width,
             report.seconds,
             static_cast<double>(report.paths()) / report.seconds * 1e-6,
@@ -94,7 +104,7 @@ Row render_row(const std::string& engine, const StudyScene& scene, const RenderS
 Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
                  const RenderSettings& settings, int repeats, const Row& extra) {
     const auto run = [engine, scene, settings, extra]() -> std::vector<Row> {
-        Row row = render_row(engine.name, *scene, settings, measure(*engine.engine, *scene, settings));
+        Row row = render_row(engine.name, *engine.engine, *scene, settings, measure(*engine.engine, *scene, settings));
         row.insert(row.end(), extra.begin(), extra.end());
         return {row};
     };
@@ -117,7 +127,7 @@ std::string threads_text(int threads) {
 }
 
 int core_count() {
-    return omp_get_num_procs();
+    return std::min(omp_get_num_procs(), omp_get_thread_limit());
 }
 
 }  // namespace raypool::studies

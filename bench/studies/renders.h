@@ -40,14 +40,19 @@ struct Measured {
     RenderReport report;
     std::string hash;
 };
+/// Throws InputError unless OpenMP gave as many threads as were asked for: a row of fewer would be of another
+/// experiment.
+void check_threads(int given, int asked);
+/// One render. What fixes its threads is checked.
 Measured measure(const Engine& engine, const StudyScene& scene, const RenderSettings& settings);
 
 /// What fixes the image: cases with the same text must have the same hash.
 std::string image_of(const StudyScene& scene, const RenderSettings& settings);
 
-/// engine, threads, schedule, grain, width, seconds, mpaths_per_s, load_max_over_mean, waiting, hash.
+/// engine, threads, schedule and grain (of engines that loop over the image), width, seconds, mpaths_per_s,
+/// load_max_over_mean, waiting, hash.
 std::vector<Column> render_columns();
-Row render_row(const std::string& engine, const StudyScene& scene, const RenderSettings& settings,
+Row render_row(const std::string& name, const Engine& engine, const StudyScene& scene, const RenderSettings& settings,
                const Measured& measured);
 
 /// A case of one row: render_row() and `extra` behind it.

@@ -11,6 +11,7 @@
 #include "bench/studies/replay_ways.h"
 #include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
+#include "core/first_exception.h"
 #include "wavefront/settings.h"
 
 namespace raypool::studies {
@@ -130,8 +131,8 @@ class ReplayStudy : public Study {
             {"processor_balance", ColumnType::Real, "real: mean over largest processor time of the render's threads"},
             {"fetch_ns", ColumnType::Real, "openmp: of a chunk, to the thread that fetches it"},
             {"barrier_ns", ColumnType::Real, "openmp: of a barrier"},
-            {"segment_ns", ColumnType::Real, "model: recursive engine, of a segment by itself"},
-            {"test_ns", ColumnType::Real, "model: of each box or primitive test"},
+            {"segment_ns", ColumnType::Signed, "model: recursive engine, of a segment by itself"},
+            {"test_ns", ColumnType::Signed, "model: of each box or primitive test"},
             {"fit_error", ColumnType::Real, "model: standard deviation of lines around it, over the mean line"},
             {"hash", ColumnType::Text, "real: of the sums of the image"}};
     }
@@ -199,22 +200,26 @@ class ReplayStudy : public Study {
                                                                                     : own);
             const std::vector<int> replayed = thread_counts(most);
             std::vector<Row> filled(replayed.size());
+            FirstException failure;
 #pragma omp parallel for schedule(dynamic) num_threads(core_count())
             for (std::size_t i = 0; i < replayed.size(); ++i) {
-                const int threads = replayed[i];
-                const Replayed counted = tests.replay(threads, {});
-                const Replayed timed = time.replay(threads, {});
-                filled[i] =
-                    sparse_row(all, {{"kind", "replayed"},
-                                     {"group", grouped.group},
-                                     {"way", way.name},
-                                     {"threads", threads},
-                                     {"efficiency_tests", counted.efficiency()},
-                                     {"efficiency_time", timed.efficiency()},
-                                     {"efficiency_costs", time.replay(threads, openmp.at(threads)).efficiency()},
-                                     {"efficiency_bound", timed.total() / (threads * time.bound(threads))},
-                                     {"max_over_mean", max_over_mean(counted.work)}});
+                failure.run([&] {
+                    const int threads = replayed[i];
+                    const Replayed counted = tests.replay(threads, {});
+                    const Replayed timed = time.replay(threads, {});
+                    filled[i] =
+                        sparse_row(all, {{"kind", "replayed"},
+                                         {"group", grouped.group},
+                                         {"way", way.name},
+                                         {"threads", threads},
+                                         {"efficiency_tests", counted.efficiency()},
+                                         {"efficiency_time", timed.efficiency()},
+                                         {"efficiency_costs", time.replay(threads, openmp.at(threads)).efficiency()},
+                                         {"efficiency_bound", timed.total() / (threads * time.bound(threads))},
+                                         {"max_over_mean", max_over_mean(counted.work)}});
+                });
             }
+            failure.rethrow();
             rows.insert(rows.end(), filled.begin(), filled.end());
         }
         return rows;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
+
 namespace raypool::studies {
 
 using nlohmann::json;
@@ -48,9 +50,13 @@ std::string markdown(const json& header, const json& rows) {
 }
 
 std::string machine_line(const json& environment) {
-    return fmt::format("{}, {} cores, {}, commit {}", environment.at("cpu").get_ref<const std::string&>(),
+    // A run may be older than the record of what its code could use.
+    const json simd = environment.value("simd", json());
+    const std::string widest =
+        simd.is_object() ? fmt::format(" and code for {}", simd.at("instruction_sets").back().get<std::string>()) : "";
+    return fmt::format("{}, {} cores, {}{}, commit {}", environment.at("cpu").get_ref<const std::string&>(),
                        environment.at("cores").get<int>(), environment.at("compiler").get_ref<const std::string&>(),
-                       environment.at("commit").get_ref<const std::string&>());
+                       widest, environment.at("commit").get_ref<const std::string&>());
 }
 
 std::string summary_page(const json& run) {
@@ -79,7 +85,7 @@ std::string summary_page(const json& run) {
     for (const char* key : {"width", "spp", "depth", "threads", "repeats", "seed"})
         if (options.at(key) != 0) command += fmt::format(" --{} {}", key, options.at(key).dump());
     if (options.contains("scene_given") || text_of(options, "scene") != "paper")
-        command += " --scene " + text_of(options, "scene");
+        command += " --scene " + shell_word(text_of(options, "scene"));
     page += fmt::format("\n{}. Finished {}; the host took {:.1f} % of the processor time for others.\n",
                         machine_line(run.at("environment")), text_of(run, "finished"),
                         100 * run.at("stolen").get<double>());

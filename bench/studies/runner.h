@@ -8,24 +8,18 @@
 
 #include <atomic>
 #include <filesystem>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
+#include "bench/studies/run_data.h"
 #include "bench/studies/study.h"
 #include "core/engine.h"
+#include "core/file_lock.h"
 
 namespace raypool::studies {
 
-/// Cases that must make one image made two. Nothing of the run that showed it is kept.
-class WrongImage : public std::runtime_error {
-  public:
-    using std::runtime_error::runtime_error;
-};
-
 struct RunControl {
     bool is_fresh = false;                          ///< forget what the folder holds
-    const std::atomic<bool>* is_stopped = nullptr;  ///< when it turns true, the run ends after the case under way
+    const std::atomic<int>* stop_signal = nullptr;  ///< where it is not 0, the run ends after the case under way
     Progress* progress = nullptr;                   ///< counts finished repeats of cases, those found in the folder too
 };
 
@@ -35,6 +29,10 @@ std::vector<std::size_t> turn_order(std::size_t count, std::size_t turn);
 
 /// How many repeats of cases the study takes in all.
 std::int64_t run_count(const Study& study, const StudyOptions& options);
+
+/// Makes the folder, and keeps other processes from running a study in it while the lock lives: whoever calls
+/// run_study() and draws pictures holds one. Throws InputError where another process is at work there.
+[[nodiscard]] FileLock lock_folder(const std::filesystem::path& folder);
 
 /// Returns false when it was stopped before the end. Writes no pictures (draw.h). Throws InputError when the folder
 /// holds another run or cannot be written to, and WrongImage.

@@ -150,7 +150,7 @@ class Stability : public Study {
             {"method", ColumnType::Text, "and its precision"},
             {"method_kind", ColumnType::Text, "naive, ours, or other"},
             {"parameter", ColumnType::Text, "what is made harder"},
-            {"value", ColumnType::Real, "of the parameter"},
+            {"value", ColumnType::Signed, "of the parameter"},
             {"measure", ColumnType::Text, "what the error is"},
             {"error", ColumnType::Real, "by the measure"},
             {"tolerance", ColumnType::Real, "an error above it is a failure"},

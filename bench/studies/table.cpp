@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -16,6 +17,7 @@ namespace {
 
 std::string cell(const Value& value) {
     if (value.is_null()) return "";
+    if (value.is_number_unsigned()) return fmt::format("{}", value.get<std::uint64_t>());
     if (value.is_number_integer()) return fmt::format("{}", value.get<std::int64_t>());
     if (value.is_number()) return fmt::format("{}", value.get<double>());
     const auto& text = value.get_ref<const std::string&>();
@@ -64,7 +66,23 @@ std::optional<Value> number(const std::string& text) {
 std::optional<Value> parse(const std::string& text, ColumnType type) {
     if (text.empty()) return Value(nullptr);
     if (type == ColumnType::Text) return Value(text);
-    return type == ColumnType::Count ? number<std::int64_t>(text) : number<double>(text);
+    return type == ColumnType::Count ? number<std::uint64_t>(text) : number<double>(text);
+}
+
+/// Adds a line that has been read to the table.
+void add_line(Table& table, const std::vector<std::string>& cells, const std::function<void(const Row&)>& check) {
+    const std::vector<Column>& columns = table.columns();
+    if (cells.size() != columns.size())
+        throw InputError(fmt::format("{} values in place of {}", cells.size(), columns.size()));
+    Row row;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const std::optional<Value> value = parse(cells[i], columns[i].type);
+        const std::string wrong = value ? fault(*value, columns[i].type) : "is " + cells[i];
+        if (!wrong.empty()) throw InputError(fmt::format("{} {}", columns[i].name, wrong));
+        row.push_back(*value);
+    }
+    if (check) check(row);
+    table.add(std::move(row));
 }
 
 }  // namespace
@@ -109,6 +127,13 @@ std::vector<Value> Table::distinct(std::string_view column) const {
     return values;
 }
 
+std::string fault(const Value& value, ColumnType type) {
+    if (!value.is_number()) return "";
+    const auto number = value.get<double>();
+    const bool is_right = std::isfinite(number) && (number >= 0 || type == ColumnType::Signed);
+    return is_right ? "" : fmt::format("is {}", number);
+}
+
 std::string csv_header(const std::vector<Column>& columns) {
     Row names;
     for (const Column& column : columns) names.emplace_back(column.name);
@@ -124,7 +149,8 @@ std::string csv_lines(const std::vector<Row>& rows) {
     return text;
 }
 
-Table read_csv(const std::filesystem::path& path, std::vector<Column> columns) {
+Table read_csv(const std::filesystem::path& path, std::vector<Column> columns,
+               const std::function<void(const Row&)>& check) {
     std::ifstream file(path, std::ios::binary);
     if (!file) throw InputError(fmt::format("{}: cannot read", path.string()));
     const std::string content((std::istreambuf_iterator<char>(file)), {});
@@ -135,15 +161,18 @@ Table read_csv(const std::filesystem::path& path, std::vector<Column> columns) {
     text.remove_prefix(header.size());
 
     Table table(std::move(columns));
-    for (std::size_t line = 2; auto cells = next_line(text); ++line) {
-        Row row;
-        for (std::size_t i = 0; i < cells->size() && i < table.columns().size(); ++i)
-            if (auto value = parse((*cells)[i], table.columns()[i].type)) row.push_back(std::move(*value));
-        if (row.size() != table.columns().size() || cells->size() != row.size())
-            throw InputError(fmt::format("{}: line {}: does not fit the columns", path.string(), line));
-        table.add(std::move(row));
+    for (std::size_t line = 2;;) {
+        const std::string_view rest = text;
+        const auto cells = next_line(text);
+        if (!cells) return table;
+        try {
+            add_line(table, *cells, check);
+        } catch (const InputError& error) {
+            throw InputError(fmt::format("{}: line {}: {}", path.string(), line, error.what()));
+        }
+        const std::string_view read = rest.substr(0, rest.size() - text.size());
+        line += static_cast<std::size_t>(std::count(read.begin(), read.end(), '\n'));  // a text may have some
     }
-    return table;
 }
 
 }  // namespace raypool::studies

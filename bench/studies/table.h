@@ -1,10 +1,11 @@
 /// The table of a study: rows of typed columns, read from and written as CSV.
 ///
-/// CSV after RFC 4180: a header of column names, texts quoted where they must be. Numbers are written so that reading
-/// them gives the same number; an empty cell is a value that does not exist.
+/// CSV after RFC 4180: a header of column names, texts quoted where they must be. Numbers are finite, and written so
+/// that reading them gives the same number; an empty cell is a value that does not exist.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +14,12 @@
 
 namespace raypool::studies {
 
-enum class ColumnType : std::uint8_t { Text, Count, Real };
+enum class ColumnType : std::uint8_t {
+    Text,
+    Count,   ///< a whole number, not negative
+    Real,    ///< a number, not negative: a time, a rate, an error
+    Signed,  ///< a number: a difference, a bias
+};
 
 struct Column {
     std::string name;
@@ -51,12 +57,17 @@ class Table {
     std::vector<Row> rows_;
 };
 
+/// What is wrong with a value in such a column, "is nan"; empty where nothing is.
+std::string fault(const Value& value, ColumnType type);
+
 std::string csv_header(const std::vector<Column>& columns);
 /// Rows as lines.
 std::string csv_lines(const std::vector<Row>& rows);
 
 /// Reads what the two functions above wrote. A last line without its end, as a killed process leaves it, is left out.
-/// Throws InputError, with file and line, for anything else that does not fit the columns.
-Table read_csv(const std::filesystem::path& path, std::vector<Column> columns);
+/// Throws InputError, with file and line, for anything else that does not fit the columns, and for a row that `check`,
+/// which is called for each in turn, refuses by an InputError.
+Table read_csv(const std::filesystem::path& path, std::vector<Column> columns,
+               const std::function<void(const Row&)>& check = nullptr);
 
 }  // namespace raypool::studies

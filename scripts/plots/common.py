@@ -90,6 +90,17 @@ def line(axes, x, spreads, index=0, **style):
     axes.fill_between(x, [s[1] for s in spreads], [s[2] for s in spreads], color=style["color"], alpha=0.18, linewidth=0)
 
 
+def write(figure, path, metadata):
+    """A picture that is there whole or not at all."""
+    path = path.resolve()
+    beside = path.with_name(f".{path.name}.tmp")
+    try:
+        figure.savefig(beside, format=path.suffix[1:], metadata=metadata)
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
 def save(figure, folder, run, picture):
     """Title above, caption and origin below; as <name>.svg and <name>.png."""
     width = figure.get_figwidth()
@@ -102,5 +113,5 @@ def save(figure, folder, run, picture):
     figure.suptitle(picture["title"], fontsize=13, fontweight="bold", x=0.01, ha="left", va="top", y=0.995)
     figure.text(0.01, 0.01, caption + "\n" + origin, fontsize=8.5, va="bottom", ha="left", color="#333333", linespacing=1.25)
     for ending, metadata in (("svg", {"Date": None}), ("png", None)):
-        figure.savefig(Path(folder) / f"{picture['name']}.{ending}", metadata=metadata)
+        write(figure, Path(folder) / f"{picture['name']}.{ending}", metadata)
     plt.close(figure)

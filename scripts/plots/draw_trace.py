@@ -5,8 +5,9 @@ The trace is what `raypool render --trace` wrote. Rounds are outlined, stages an
 """
 import json
 import sys
+from pathlib import Path
 
-from common import COLOURS, HATCHES, plt
+from common import COLOURS, HATCHES, plt, write
 
 STAGES = ["generate", "intersect", "shade", "accumulate", "append", "sort", "wait"]
 STAGE_COLOURS = [*COLOURS[:6], "#BBBBBB"]
@@ -37,7 +38,7 @@ def main():
     lanes.set_xlabel("milliseconds since the start of the render")
     lanes.legend(loc="upper left", bbox_to_anchor=(1, 1))
     figure.tight_layout()
-    figure.savefig(sys.argv[2], metadata={"Software": None})
+    write(figure, Path(sys.argv[2]), {"Software": None})
 
 
 if __name__ == "__main__":

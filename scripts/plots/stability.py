@@ -88,4 +88,4 @@ def images(name):
 
 
 PICTURES = {**{name: curves(name) for name in ROWS},
-            **{name: images(name) for name in ("acne", "leak", "glass", "ground", "checker")}}
+            **{name: images(name) for name in ("acne", "leak", "glass", "coincidence", "ground", "checker")}}

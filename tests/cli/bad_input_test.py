@@ -150,6 +150,21 @@ class BadOption(CommandTest):
             self.assert_refused("render", "scene.json", "--engine", "wavefront", "--pool-scope", "shared",
                                 "--accumulator", accumulator, named=["--accumulator", "--pool-scope"])
 
+    def test_that_names_one_file_for_two_things_is_refused(self):
+        os.link(self.folder / "scene.json", self.folder / "other.json")
+        os.symlink("scene.json", self.folder / "link.json")
+        os.symlink("new.json", self.folder / "dangling.json")
+        for name in ("scene.json", "./scene.json", "other.json", "link.json"):
+            self.assert_refused("render", "scene.json", "--stats", name, named=["--stats", name, "the scene"])
+            self.assert_refused("compare", "scene.json", "--check", "--json", name, named=["--json", name])
+            self.assert_refused("advise", "scene.json", "--target-error", 1, "--json", name, named=["--json", name])
+        self.assert_refused("render", "paper", "--stats", "new.json", "--trace", "dangling.json",
+                            named=["--trace", "dangling.json", "--stats"])
+        self.run_well("render", "scene.json", "--spp", 1, "-o", "a.png")
+        self.assert_refused("diff", "a.png", "a.png", "-o", "a.png", named=["--output", "a.png"])
+        self.run_well("render", "scene.json", "--spp", 1, "--checkpoint", "p.png")
+        self.assert_refused("merge", "p.png", "-o", "p.png", named=["--output", "p.png", "part"])
+
     def test_for_what_adaptive_sampling_cannot_know_is_refused(self):
         adaptive = ("render", "scene.json", "--target-error", 0.1)
         self.assert_refused(*adaptive, "--split-depth", 1, named=["--split-depth", "--target-error"])

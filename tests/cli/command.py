@@ -73,9 +73,10 @@ class CommandTest(unittest.TestCase):
         keywords.setdefault("timeout", 60)
         keywords.setdefault("stdout", subprocess.PIPE)
         keywords.setdefault("stderr", subprocess.PIPE)
+        keywords = {"text": True, "errors": "backslashreplace", **keywords}
         return subprocess.run(
             [self.command, *map(str, arguments)], cwd=self.folder, env={**clean, **(environment or {})},
-            stdin=subprocess.DEVNULL, text=True, errors="backslashreplace", check=False, **keywords)
+            stdin=subprocess.DEVNULL, check=False, **keywords)
 
     def run_well(self, *arguments, **keywords):
         """The finished process, which must have ended well and said nothing on stderr."""

@@ -3,6 +3,7 @@
 import itertools
 import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -16,6 +17,7 @@ SETTINGS = {  # as any user, on fewer cores than ranks
 }
 PAPER = ("render", "paper", "--width", 160, "--spp", 60)
 LONG = ("render", "paper", "--width", 160, "--spp", 400)
+ENDLESS = ("render", "paper", "--width", 160, "--spp", 40000)
 
 
 class MpiTest(CommandTest):
@@ -37,6 +39,7 @@ class MpiTest(CommandTest):
         process = subprocess.Popen(
             ["mpirun", "-n", str(count), self.command, *map(str, arguments), "--checkpoint", "c.sums", "--every", "0"],
             cwd=self.folder, env={**os.environ, **SETTINGS}, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.terminate)
         while not (self.folder / "c.sums").exists():
             self.assertIsNone(process.poll(), "ended before its first checkpoint")
             time.sleep(0.01)
@@ -81,7 +84,7 @@ class MpiTest(CommandTest):
             self.assertNotEqual(process.returncode, 0)
             self.assertRegex(error, f"process rank {victim} .* signal 9")
             if victim != 0:
-                self.assertRegex(error, r"c\.sums holds \d+ samples a pixel: the same command with --resume")
+                self.assertRegex(error, r"c\.sums holds at least \d+ samples a pixel: the same command with --resume")
             kept = (self.folder / "c.sums").read_bytes()
             self.assertEqual(self.alone(*LONG, "--checkpoint", "c.sums", "--resume"), expected)
             (self.folder / "c.sums").write_bytes(kept)
@@ -99,6 +102,39 @@ class MpiTest(CommandTest):
         self.assertIn("stopped; c.sums holds", error)
         self.assertTrue((self.folder / "part.pfm").exists())
         self.assertEqual(self.alone(*LONG, "--checkpoint", "c.sums", "--resume"), self.alone(*LONG))
+
+    def test_signal_to_mpirun_is_answered_once_and_truly(self):
+        """On SIGTERM mpirun ends the ranks, and exits 1 whatever they do; it hands SIGUSR1 on, and exits as they do."""
+        for number, status in ((signal.SIGTERM, 1), (signal.SIGUSR1, 138)):
+            (self.folder / "c.sums").unlink(missing_ok=True)
+            process, _ = self.start(2, *ENDLESS, "--threads", 1)
+            process.send_signal(number)
+            _, error = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, status, error)
+            said = [line for line in error.splitlines() if line.startswith("raypool: ")]
+            self.assertEqual(len(said), 1, error)
+            least = int(re.search(r"c\.sums holds (?:at least )?(\d+) samples a pixel: the same command", said[0])[1])
+            ranges = json.loads((self.folder / "c.sums").read_bytes().split(b"\n", 1)[0])["ranges"]
+            self.assertGreaterEqual(ranges[0][1], least)
+
+    def test_ranks_that_mpi_does_not_join_are_refused(self):
+        """As under srun --mpi=pmi2 with an MPI that does not speak it: each would be one rank of one."""
+        result = self.run_command("render", "scene.json", environment={**SETTINGS, "PMI_RANK": "0", "PMI_SIZE": "3"})
+        self.assert_one_line(result, 2, "3 ranks")
+
+    def test_second_job_with_the_same_checkpoint_is_refused(self):
+        process, _ = self.start(2, *ENDLESS, "--threads", 1)
+        result = self.ranks(2, *ENDLESS, "--threads", 1, "--checkpoint", "c.sums", "--resume")
+        self.assertEqual((result.returncode, result.stderr.count("raypool: ")), (2, 1), result.stderr)
+        self.assertIn("c.sums: another raypool is at work on it", result.stderr)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+
+    def test_checkpoint_is_extended_by_ranks_to_the_bits_of_a_longer_render(self):
+        expected = self.alone(*PAPER)
+        self.hash_of(self.ranks(2, *PAPER[:4], "--spp", 20, "--threads", 1, "--checkpoint", "c.sums"))
+        resumed = self.ranks(3, *PAPER, "--threads", 1, "--checkpoint", "c.sums", "--resume")
+        self.assertEqual(self.hash_of(resumed), expected)
 
     def test_slow_rank_gets_less_work(self):
         result = self.ranks(2, *LONG, "--threads", 1, "--stats", "s.json", "-o", "a.pfm",

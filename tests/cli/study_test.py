@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import shutil
 import signal
 import subprocess
 import time
@@ -55,7 +56,8 @@ class StudyTest(CommandTest):
         self.assertIn("schedules", names)
         for name in names:
             with self.subTest(name):
-                self.run_well("study", name, *TINY, "--threads", "2", "--quiet", timeout=300)
+                threads = () if name == "ranks" else ("--threads", "2")
+                self.run_well("study", name, *TINY, *threads, "--quiet", timeout=300)
                 if name == "reproduce":
                     page = (self.folder / "out/reproduce/summary.md").read_text()
                     for item in ("Table 1", "Table 2", "Figure 5", "Figure 11", "CPU against GPU"):
@@ -68,7 +70,13 @@ class StudyTest(CommandTest):
                         self.assertTrue((self.folder / "out/stability" / f"{image}.png").exists(), image)
                     self.check_verdicts(rows_of(self.folder / "out/stability"))
 
-    def test_ctrl_c_loses_no_finished_row_and_repeats_none(self):
+    def test_signal_loses_no_finished_row_and_repeats_none(self):
+        for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGUSR1, 138)):
+            with self.subTest(number):
+                self.check_goes_on_after(number, status)
+                shutil.rmtree(self.folder / "out")
+
+    def check_goes_on_after(self, number, status):
         arguments = ["study", "schedules", "--quick", "--width", "64", "--spp", "16", "--repeats", "5"]
         environment = {key: value for key, value in os.environ.items() if not key.startswith("OMP_")}
         process = subprocess.Popen([self.command, *arguments], cwd=self.folder, env=environment, text=True,
@@ -76,9 +84,10 @@ class StudyTest(CommandTest):
         data = self.folder / "out/schedules/data.csv"
         while process.poll() is None and not (data.exists() and len(rows_of(data.parent)) >= 3):
             time.sleep(0.01)
-        process.send_signal(signal.SIGINT)
+        self.assert_one_line(self.run_command(*arguments, "--quiet"), 2, "out/schedules", "another raypool")
+        process.send_signal(number)
         _, said = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 130, said)
+        self.assertEqual(process.returncode, status, said)
         self.assertIn("goes on from there", said)
         before = rows_of(data.parent)
         self.assertGreaterEqual(len(before), 3)
@@ -94,6 +103,26 @@ class StudyTest(CommandTest):
     def test_another_run_in_the_folder_is_refused(self):
         self.run_well("study", "schedules", *TINY, "--quiet")
         self.assert_refused("study", "schedules", *TINY, "--seed", "1", named=["out/schedules", "options", "--fresh"])
+
+    def test_scene_with_a_name_that_is_no_utf8_can_be_gone_on_with(self):
+        scene = os.fsdecode(b"bad\xff\x1b.json")
+        (self.folder / scene).write_bytes((self.folder / "scene.json").read_bytes())
+        for _ in range(2):
+            self.run_well("study", "schedules", *TINY, "--threads", 1, "--scene", scene, "--out", scene[:-5], "--quiet")
+            self.check_folder(self.folder / scene[:-5])
+    def test_figures_that_no_run_leaves_are_refused_by_their_line(self):
+        self.run_well("study", "schedules", *TINY, "--quiet")
+        data = self.folder / "out/schedules/data.csv"
+        head, first, *rest = data.read_text().splitlines(keepends=True)
+        names = head.strip().split(",")
+        place = names.index("mpaths_per_s")
+        for word in ("nan", "inf", "-3"):
+            cells = next(csv.reader([first]))
+            cells[place] = word
+            data.write_text("".join([head, ",".join(f'"{cell}"' for cell in cells) + "\n", *rest]))
+            self.assert_refused("study", "schedules", *TINY, "--quiet", named=["data.csv: line 2", "mpaths_per_s"])
+        data.write_text("".join([head, first, first, *rest]))
+        self.assert_refused("study", "schedules", *TINY, "--quiet", named=["data.csv: line 3", "there already"])
 
     def test_bad_input_is_refused(self):
         self.assert_refused("study", "nothing", named=["nothing", "schedules"])

@@ -47,13 +47,13 @@ requires requires(Block b) {
     b.dual_u;
 }
 Scalar shape_distance(const Block& block, int lane, const Ray<Scalar>& ray, std::int32_t leaving_id) {
-    const Vec3<Scalar> corner = lane_of<Scalar>(block.corner, lane);
+    const Vec3<Scalar> point = lane_of<Scalar>(block.point, lane);
     const Vec3<Scalar> normal = lane_of<Scalar>(block.normal, lane);
-    const bool is_leaving = block.id[lane] == leaving_id;
-    if (in_box == InBox::No) return plane_distance<Scalar>(ray.origin, ray.direction, corner, normal, is_leaving);
+    const bool is_leaving = block.group[lane] == leaving_id;
+    if (in_box == InBox::No) return plane_distance<Scalar>(ray.origin, ray.direction, point, normal, is_leaving);
     const Scalar t =
-        quad_distance<Scalar>(ray.origin, ray.direction, corner, normal, lane_of<Scalar>(block.dual_u, lane),
-                              lane_of<Scalar>(block.dual_v, lane), is_leaving);
+        quad_distance<Scalar>(ray.origin, ray.direction, point, normal, lane_of<Scalar>(block.corner, lane),
+                              lane_of<Scalar>(block.dual_u, lane), lane_of<Scalar>(block.dual_v, lane), is_leaving);
     if (t == kInfinity<Scalar>) return t;
     const RayInverse<Scalar> inverse = ray_inverse<Scalar>(ray.direction);
     const bool is_inside = is_inside_box<Scalar>(lane_of<Scalar>(block.low, lane), lane_of<Scalar>(block.high, lane),

@@ -2,6 +2,8 @@
 /// does not depend on the tree's shape.
 #include "core/bvh.h"
 
+#include <bit>
+
 #include <gtest/gtest.h>
 
 #include "core/shapes.h"
@@ -87,12 +89,49 @@ TEST(BinaryBvh, HalvesWhatCannotBeSplitByPlace) {
     EXPECT_LE(check_tree(coincident_boxes(4096), 1), 14);
 }
 
-TEST(BinaryBvh, StaysWithinTheTraversalsStackForSpheresThatRunAwayExponentially) {
-    const Boxes boxes = exponentially_spaced_boxes();
-    EXPECT_LE(check_tree(boxes, 1), 40 + 24 + 1);
-    EXPECT_GT(check_tree(boxes, 1), 40) << "these boxes would not need the limit";
-    EXPECT_LE((collapse<double, 4>(build_binary_bvh(boxes, 1)).depth), 40 + 24 + 1);
+/// The heuristic splits off one box a level as long as it is asked, and what is left then has no place to be split by.
+Boxes boxes_that_make_a_deep_tree(int coincident) {
+    Boxes boxes(static_cast<std::size_t>(coincident), box_around(Eigen::Vector3d::Zero(), 0.5));
+    for (int i = 1; i <= 2 * kMostSahLevels; ++i) boxes.push_back(box_around({std::ldexp(1.0, 8 * i), 0, 0}, 0.5));
+    return boxes;
 }
+
+/// Entries that a traversal's stack needs where a ray meets every box and the worst child is always the nearest.
+template <int width>
+int stack_needed(const WideBvh<double, width>& tree, std::int32_t child) {
+    if (child < 0) return 1;
+    const auto& node = tree.nodes.at(static_cast<std::size_t>(child));
+    int children = 0;
+    int most = 0;
+    for (int lane = 0; lane < width; ++lane) {
+        if (node.bounds[0][0][lane] > node.bounds[0][1][lane]) continue;
+        ++children;
+        most = std::max(most, stack_needed(tree, node.child[lane]));
+    }
+    return children - 1 + most;
+}
+
+TEST(BinaryBvh, IsNoDeeperThanItsBuilderCanMakeItWhateverTheBoxes) {
+    for (const Boxes& boxes :
+         {exponentially_spaced_boxes(), boxes_that_make_a_deep_tree(1), boxes_that_make_a_deep_tree(1000)}) {
+        const int halves = std::bit_width(boxes.size() - 1);
+        for (const std::uint32_t block : {1U, 4U}) {
+            const int levels = check_tree(boxes, block);  // with that of the leaves
+            EXPECT_LE(levels, kMostSahLevels + halves + 1);
+            EXPECT_GT(levels, kMostSahLevels) << "these boxes would not need the limit";
+            const auto wide = collapse<double, 4>(build_binary_bvh(boxes, block));
+            EXPECT_LE(wide.depth, levels - 1);
+            EXPECT_LE(stack_needed(wide, 0), kTraversalStack<4>);
+            EXPECT_LE(stack_needed(wide, 0), (kMostSahLevels + halves) * 3 + 1);
+        }
+    }
+    const int ten = check_tree(boxes_that_make_a_deep_tree(1024), 1);
+    EXPECT_GE(ten, kMostSahLevels + 10) << "the halves come on top of the heuristic's levels";
+}
+
+/// What the stack relies on: the most boxes that the builder takes, halved to one.
+static_assert((kMostBoxes >> static_cast<unsigned>(kMostTreeLevels - kMostSahLevels)) <= 1);
+static_assert(kTraversalStack<8> == kMostTreeLevels * 7 + 1);
 
 template <int width>
 void check_wide(const Boxes& boxes, std::uint32_t block) {

@@ -52,7 +52,7 @@ TEST(PlaneDistance, IsNoneForRaysThatRunAlongLeaveOrStartOnThePlane) {
 /// A quad in the plane y = 1 with corners (1, 1, 1), (3, 1, 1) and (1, 1, 5).
 float distance_to_quad(float x, float z, bool is_leaving = false) {
     return quad_distance<float>(vec3<float>(x, 0, z), vec3<float>(0, 1, 0), vec3<float>(1, 1, 1), vec3<float>(0, -1, 0),
-                                vec3<float>(0.5F, 0, 0), vec3<float>(0, 0, 0.25F), is_leaving);
+                                vec3<float>(1, 1, 1), vec3<float>(0.5F, 0, 0), vec3<float>(0, 0, 0.25F), is_leaving);
 }
 
 TEST(QuadDistance, IncludesEdgesAndCornersAndNothingBeyond) {
@@ -93,7 +93,7 @@ TEST(QuadDistance, LetsNoRayOutOfABoxOfSixQuads) {
                 normal[axis] = 1;
                 dual_u[(axis + 1) % 3] = 0.5F;
                 dual_v[(axis + 2) % 3] = 0.5F;
-                t = std::min(t, quad_distance<float>(origin, direction, corner, normal, dual_u, dual_v, false));
+                t = std::min(t, quad_distance<float>(origin, direction, corner, normal, corner, dual_u, dual_v, false));
             }
         }
         if (t == kInfinity<float>) ++escaped;

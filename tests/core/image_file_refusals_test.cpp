@@ -1,10 +1,5 @@
 /// What image files must not be believed: cut off, damaged, hostile or simply of another kind.
 
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfTiledOutputFile.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -35,14 +30,12 @@ TEST(ImageFile, RefusesWhatIsNotAReadableFile) {
     set_file_text(folder / "empty.pfm", "");
     set_file_text(folder / "text.png", "this is not a picture");
     set_file_text(folder / "text.exr", "this is not a picture");
-    set_file_text(folder / "rgba.pfm", std::string("PF4\n1 1\n-1.0\n\0\0\0\0", 17));
-    set_file_text(folder / "map.pfm", "P6 1 1 255 rgb");
+    set_file_text(folder / "other.pfm", std::string("P6\n1 1\n-1.0\n\0\0\0\0", 16));
     EXPECT_EQ(refusal(folder / "absent.png"), "No such file or directory");
     EXPECT_EQ(refusal(folder / "folder.png"), "Is a directory");
     EXPECT_EQ(refusal(folder / "text.png"), "not a PNG file");
     EXPECT_EQ(refusal(folder / "text.exr"), "not an EXR file");
-    EXPECT_EQ(refusal(folder / "rgba.pfm"), "must be PF (colour) or Pf (grey), and no other kind of PFM");
-    EXPECT_EQ(refusal(folder / "map.pfm"), "not a PFM file: must begin with PF or Pf");
+    EXPECT_EQ(refusal(folder / "other.pfm"), "not a PFM file: must begin with PF or Pf");
     for (const char* name : {"empty.png", "empty.exr", "empty.pfm"}) EXPECT_NE(refusal(folder / name), "") << name;
 }
 

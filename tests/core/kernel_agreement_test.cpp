@@ -97,7 +97,7 @@ TEST(KernelAgreement, PlaneAndQuadDistance) {
         const Vec3<Real> dual_v = in.vec();
         const Mask<Real> is_leaving = in.flag();
         out(plane_distance<Real>(origin, direction, corner, normal, is_leaving));
-        out(quad_distance<Real>(origin, direction, corner, normal, dual_u, dual_v, is_leaving));
+        out(quad_distance<Real>(origin, direction, corner, normal, corner, dual_u, dual_v, is_leaving));
         out(plane_coordinates<Real>(origin, corner, dual_u, dual_v));
     });
 }
@@ -217,8 +217,10 @@ TEST(KernelAgreement, CheckersSphereCoordinatesAndSky) {
         const Split<Real> scale{high, in.real()};
         const Vec3<Real> p = in.vec();
         const Vec3<Real> n = in.vec();
-        for (int i = 0; i < 3; ++i) out(cell_parity<Real>(p[i], scale));
-        out.mask(is_odd_cell<Real>(p, scale));
+        Vec3<Real> outward;
+        for (int i = 0; i < 3; ++i) outward[i] = outward_part<Real>(p[i], n[i], scale, n[i]);
+        for (int i = 0; i < 3; ++i) out(cell_parity<Real>(p[i], scale, outward[i]));
+        out.mask(is_odd_cell<Real>(p, outward, scale));
         out(sphere_coordinates<Real>(n));
         using S = ScalarOf<Real>;
         out(sky_radiance<Real>({vec3<S>(S(0.75), S(0.85), 1), vec3<S>(S(-0.25), S(-0.15), 0)}, n));

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/error.h"
+
 namespace raypool::test {
 namespace {
 
@@ -27,29 +29,43 @@ TEST(WorkItems, HoldEveryPixelOnce) {
     }
 }
 
-TEST(ChosenPixels, AreKnownInEveryOrderOfItems) {
-    const std::vector<std::uint32_t> list{0, 3, 4, 5, 20, 21, 40, 90};
-    for (const std::int64_t stride : {1, 7, 13, 89}) {  // prime to 91
-        ChosenPixels chosen(&list);
-        for (std::int64_t i = 0; i < 91; ++i) {
-            const std::int64_t pixel = i * stride % 91;
-            ASSERT_EQ(chosen.contains(pixel), std::count(list.begin(), list.end(), pixel) == 1) << pixel;
+TEST(WorkItems, OfAListHoldItsPixelsOnceAndAreNoMoreThanNeeded) {
+    for (const auto& [width, height] : {std::pair{1, 1}, {1, 17}, {17, 1}, {13, 7}, {16, 16}, {33, 20}}) {
+        for (const std::uint32_t step : {1U, 2U, 5U, 40U, 1000U}) {
+            std::vector<std::uint32_t> list;
+            for (auto pixel = step / 2; pixel < static_cast<std::uint32_t>(width * height); pixel += step)
+                list.push_back(pixel);
+            for (const Grain& grain : kGrains) {
+                const WorkItems items(width, height, grain, &list);
+                std::vector<std::uint32_t> found;
+                for (std::int64_t item = 0; item < items.count(); ++item) {
+                    const PixelRange range = items.range(item);
+                    std::int64_t in_item = 0;
+                    items.for_each_line(item, [&](const LinePixels& line) {
+                        for (std::int64_t i = 0; i < line.count; ++i) {
+                            const std::int64_t x = line[i] % width;
+                            const std::int64_t y = line[i] / width;
+                            EXPECT_EQ(y, line[0] / width);
+                            EXPECT_TRUE(x >= range.x_begin && x < range.x_end && y >= range.y_begin && y < range.y_end);
+                            found.push_back(static_cast<std::uint32_t>(line[i]));
+                        }
+                        in_item += line.count;
+                    });
+                    EXPECT_GT(in_item, 0) << "an item without a pixel";
+                }
+                std::sort(found.begin(), found.end());
+                ASSERT_EQ(found, list) << width << ' ' << height << ' ' << step << ' ' << grain.tile;
+            }
         }
     }
-    EXPECT_TRUE(ChosenPixels(nullptr).contains(7));
-    const std::vector<std::uint32_t> none;
-    EXPECT_FALSE(ChosenPixels(&none).contains(0));
 }
 
-TEST(ChosenPixels, OfALineAreThoseBetweenItsEnds) {
-    const std::vector<std::uint32_t> list{0, 3, 4, 5, 20, 21};
-    const auto between = [&](std::int64_t begin, std::int64_t end) {
-        const auto some = chosen_between(list, begin, end);
-        return std::vector<std::uint32_t>(some.begin(), some.end());
-    };
-    EXPECT_EQ(between(3, 5), (std::vector<std::uint32_t>{3, 4}));
-    EXPECT_EQ(between(0, 100), list);
-    EXPECT_TRUE(between(6, 20).empty());
+TEST(WorkItems, WithoutAListHaveWholeLines) {
+    const WorkItems items(13, 7, {Grain::Kind::Tile, 4});
+    std::int64_t pixels = 0;
+    for (std::int64_t item = 0; item < items.count(); ++item)
+        items.for_each_line(item, [&](const LinePixels& line) { pixels += line.count; });
+    EXPECT_EQ(pixels, 13 * 7);
 }
 
 TEST(WorkItems, AreCountedIn64Bits) {
@@ -103,20 +119,59 @@ TEST(RunThreads, RunsTheBodyOncePerThreadWithDenormalsFlushed) {
     EXPECT_FALSE(flushes_denormals());
 }
 
-TEST(RunThreads, AppliesTheScheduleAndPutsBackTheOneBefore) {
-    omp_set_schedule(omp_sched_guided, 7);
+TEST(RunThreads, AppliesTheScheduleAndPutsBackWhatOpenMpHadBefore) {
+    for (const int dynamic : {0, 1}) {
+        omp_set_dynamic(dynamic);
+        omp_set_schedule(omp_sched_guided, 7);
+        RenderSettings settings;
+        settings.schedule = {LoopSchedule::Kind::Dynamic, 3};
+        omp_sched_t kind_within{};
+        int chunk_within = 0;
+        run_threads(settings, [&](ThreadWork&, SampleAudit&) { omp_get_schedule(&kind_within, &chunk_within); });
+        EXPECT_EQ(kind_within & ~omp_sched_monotonic, omp_sched_dynamic);
+        EXPECT_EQ(chunk_within, 3);
+        EXPECT_THROW(run_threads(settings, [](ThreadWork&, SampleAudit&) { throw InputError("no"); }), InputError);
+        make_by_threads(settings, [](int) {});
+        omp_sched_t kind{};
+        int chunk = 0;
+        omp_get_schedule(&kind, &chunk);
+        EXPECT_EQ(kind & ~omp_sched_monotonic, omp_sched_guided);
+        EXPECT_EQ(chunk, 7);
+        EXPECT_EQ(omp_get_dynamic(), dynamic);
+    }
+    omp_set_dynamic(0);
+}
+
+TEST(RunThreads, ThrowsWhatAnyOfItsThreadsThrew) {
+    for (const int guilty : {0, 1, 2}) {
+        RenderSettings settings;
+        settings.threads = 3;
+        const auto fail = [&] {
+            if (omp_get_thread_num() == guilty) throw InputError("no");
+        };
+        EXPECT_THROW(run_threads(settings, [&](ThreadWork&, SampleAudit&) { fail(); }), InputError);
+        EXPECT_THROW(make_by_threads(settings, [&](int) { fail(); }), InputError);
+    }
+}
+
+TEST(RunThreads, ReportsNoThreadThatOpenMpDidNotGive) {
     RenderSettings settings;
-    settings.schedule = {LoopSchedule::Kind::Dynamic, 3};
-    omp_sched_t kind_within{};
-    int chunk_within = 0;
-    run_threads(settings, [&](ThreadWork&, SampleAudit&) { omp_get_schedule(&kind_within, &chunk_within); });
-    EXPECT_EQ(kind_within & ~omp_sched_monotonic, omp_sched_dynamic);
-    EXPECT_EQ(chunk_within, 3);
-    omp_sched_t kind{};
-    int chunk = 0;
-    omp_get_schedule(&kind, &chunk);
-    EXPECT_EQ(kind & ~omp_sched_monotonic, omp_sched_guided);
-    EXPECT_EQ(chunk, 7);
+    settings.threads = 3;
+    Trace trace;
+    settings.trace = &trace;
+    RenderReport report;
+    int made = 0;
+#pragma omp parallel num_threads(2)
+    {
+#pragma omp master
+        {
+            report = run_threads(settings, [](ThreadWork&, SampleAudit&) {});
+            made = make_by_threads(settings, [](int) {});
+        }
+    }
+    EXPECT_EQ(report.threads.size(), 1U);
+    EXPECT_EQ(trace.lanes().size(), 1U);
+    EXPECT_EQ(made, 1);
 }
 
 }  // namespace

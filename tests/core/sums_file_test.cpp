@@ -15,7 +15,8 @@ namespace raypool::test {
 namespace {
 
 RenderSums some_sums(Moments moments, std::int64_t width = 3, std::int64_t height = 1) {
-    RenderSums sums{{{"scene", "0123"}, {"spp", "40"}},
+    RenderSums sums{{{"scene", "0123"}, {"seed", "7"}},
+                    40,
                     {{0, 5}, {7, 40}},
                     {},
                     0,
@@ -51,6 +52,7 @@ TEST_F(SumsFile, ComesBackBitByBit) {
         write_sums(path_, sums);
         const RenderSums back = read_sums(path_);
         EXPECT_EQ(back.key, sums.key);
+        EXPECT_EQ(back.spp, sums.spp);
         EXPECT_EQ(back.ranges, sums.ranges);
         EXPECT_EQ(back.sample_counts, sums.sample_counts);
         EXPECT_EQ(back.rounds, sums.rounds);
@@ -87,18 +89,21 @@ TEST_F(SumsFile, WithAnyBitFlippedIsRefused) {
     }
 }
 
-TEST_F(SumsFile, OfALaterVersionIsRefusedByItsVersion) {
-    write_sums(path_, some_sums(Moments::First));
-    std::string text = bytes_of(path_);
-    const std::size_t at = text.find("\"version\":1");
-    ASSERT_NE(at, std::string::npos);
-    text.replace(at, 11, "\"version\":2");
-    write_bytes(path_, text);
-    try {
-        static_cast<void>(read_sums(path_));
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("version 2"), std::string::npos) << error.what();
+TEST_F(SumsFile, OfAnotherVersionIsRefusedByItsVersion) {
+    for (const char* other : {"1", "3"}) {
+        write_sums(path_, some_sums(Moments::First));
+        std::string text = bytes_of(path_);
+        const std::size_t at = text.find("\"version\":2");
+        ASSERT_NE(at, std::string::npos);
+        text.replace(at + 10, 1, other);
+        write_bytes(path_, text);
+        try {
+            static_cast<void>(read_sums(path_));
+            FAIL() << "version " << other;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(std::string("of version ") + other), std::string::npos)
+                << error.what();
+        }
     }
 }
 
@@ -116,8 +121,8 @@ std::string refusal_of(std::string text) {
 /// A file without its checksum, one pixel large, with `instead` in place of `part`.
 std::string changed(const std::string& part, const std::string& instead) {
     const std::string header =
-        R"({"fraction_bits":40,"format":"raypool sums","has_counts":false,"has_squares":false,"height":1,"key":[["spp","40"]],)"
-        R"("limit_bits":2,"ranges":[[0,5],[7,40]],"rounds":0,"square_bits":30,"version":1,"width":1})";
+        R"({"fraction_bits":40,"format":"raypool sums","has_counts":false,"has_squares":false,"height":1,"key":[["seed","40"]],)"
+        R"("limit_bits":2,"ranges":[[0,5],[7,40]],"rounds":0,"spp":40,"version":2,"width":1})";
     const std::size_t at = header.find(part);
     EXPECT_NE(at, std::string::npos) << part;
     return std::string(header).replace(at, part.size(), instead) + "\n" + std::string(24, '\0');
@@ -125,23 +130,23 @@ std::string changed(const std::string& part, const std::string& instead) {
 
 TEST(HostileSums, AreRefusedWhereverTheirHeaderIsNotAsItIsWritten) {
     EXPECT_EQ(refusal_of(changed("40", "40")), "");
-    for (const auto& [part, instead] :
-         std::initializer_list<std::pair<const char*, const char*>>{{"\"width\":1", "\"width\":2"},
-                                                                    {"\"width\":1", "\"width\":1.0"},
-                                                                    {"\"width\":1", "\"width\":true"},
-                                                                    {"\"width\":1", "\"width\":18446744073709551615"},
-                                                                    {"\"height\":1", "\"height\":4294967297"},
-                                                                    {"\"rounds\":0", "\"rounds\":1e300"},
-                                                                    {"\"rounds\":0", "\"rounds\":-1"},
-                                                                    {"\"version\":1", "\"version\":\"1\""},
-                                                                    {"[0,5],[7,40]", "[0,5],[5,40]"},
-                                                                    {"[0,5],[7,40]", "[7,40],[0,5]"},
-                                                                    {"[0,5],[7,40]", "[0,5],[7]"},
-                                                                    {"[0,5],[7,40]", "[-1,5]"},
-                                                                    {"[0,5],[7,40]", "[5,5]"},
-                                                                    {"[[\"spp\",\"40\"]]", "[[\"spp\",40]]"},
-                                                                    {"[[\"spp\",\"40\"]]", "[[\"\\u001b[2J\",\"40\"]]"},
-                                                                    {"\"rounds\":0", "\"rounds\":0,\"rounds\":0"}}) {
+    for (const auto& [part, instead] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"\"width\":1", "\"width\":2"},
+             {"\"width\":1", "\"width\":1.0"},
+             {"\"width\":1", "\"width\":true"},
+             {"\"width\":1", "\"width\":18446744073709551615"},
+             {"\"height\":1", "\"height\":4294967297"},
+             {"\"rounds\":0", "\"rounds\":1e300"},
+             {"\"rounds\":0", "\"rounds\":-1"},
+             {"\"version\":2", "\"version\":\"1\""},
+             {"[0,5],[7,40]", "[0,5],[5,40]"},
+             {"[0,5],[7,40]", "[7,40],[0,5]"},
+             {"[0,5],[7,40]", "[0,5],[7]"},
+             {"[0,5],[7,40]", "[-1,5]"},
+             {"[0,5],[7,40]", "[5,5]"},
+             {"[[\"seed\",\"40\"]]", "[[\"seed\",40]]"},
+             {"[[\"seed\",\"40\"]]", "[[\"\\u001b[2J\",\"40\"]]"},
+             {"\"rounds\":0", "\"rounds\":0,\"rounds\":0"}}) {
         const std::string refusal = refusal_of(changed(part, instead));
         EXPECT_EQ(refusal.find("a.sums: "), 0U) << instead;
         EXPECT_EQ(refusal.find('\x1b'), std::string::npos) << instead;
@@ -150,7 +155,7 @@ TEST(HostileSums, AreRefusedWhereverTheirHeaderIsNotAsItIsWritten) {
 
 TEST(HostileSums, NestedWithoutEndAreRefusedWithoutDescending) {
     const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
-    EXPECT_NE(refusal_of(changed("\"version\":1", "\"version\":" + deep)), "");
+    EXPECT_NE(refusal_of(changed("\"version\":2", "\"version\":" + deep)), "");
     EXPECT_NE(refusal_of(changed("\"raypool sums\"", deep)), "");
 }
 

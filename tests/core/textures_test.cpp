@@ -79,7 +79,7 @@ TEST(Checker, CountsTheSumOfThreeCells) {
     for (int cell = 0; cell < 64; ++cell) {
         const int x = cell % 4 - 2, y = cell / 4 % 4 - 2, z = cell / 16 - 2;
         const Vec3<float> p = vec3<float>(x + 0.5F, y + 0.5F, z + 0.5F);
-        EXPECT_EQ(is_odd_cell<float>(p, split_scale<float>(1)), ((x + y + z) & 1) != 0);
+        EXPECT_EQ(is_odd_cell<float>(p, vec3<float>(0, 0, 0), split_scale<float>(1)), ((x + y + z) & 1) != 0);
     }
 }
 

@@ -17,7 +17,9 @@ Rendered render_with(const CompiledScene<float>& scene) {
     RenderSettings settings;
     settings.end_sample = 2;
     return rendered_by(scene, settings, [&](Framebuffer& framebuffer) {
-        return recursive::render<recursive::Form::Iterative, needs, float, NoWorkCount>(scene, settings, framebuffer);
+        return render_whole(
+            *recursive::begin<recursive::Form::Iterative, needs, float, NoWorkCount>(scene, settings, framebuffer),
+            settings);
     });
 }
 

@@ -20,7 +20,7 @@ void try_reader(std::string_view content) {
         const RenderSums sums = decode_sums(content, "fuzz.sums");
         require_one_line("of a render with " + difference(sums.key, {}));
         require(sums.sample_count() >= 0, "a count of samples is not negative");
-        gaps(sums.ranges, whole_number(sums.key, "spp", 1, 1 << 30));
+        gaps(sums.ranges, sums.spp);
         const Image image = sums.framebuffer.image(sums.sample_count());
         require(std::ssize(image.rgb) == std::ssize(sums.framebuffer.sums()), "an image has all pixels");
         require(sums.framebuffer.hash().size() == 16, "a hash has 16 digits");

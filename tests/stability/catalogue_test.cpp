@@ -94,7 +94,7 @@ const Point kPoints[] = {
     {"large-image", "int32", 65'536, 0.4, 0.6},
     {"pixel-jitter", "pixel + jitter, float", 65'536, 1e-3, 4e-3},
     {"splitting", "all branches at once", 7, 128, 128},
-    {"quad-seam", "ours, float", 100, 0.01, 0.1},
+    {"quad-seam", "ours, float", 1e3, 0, 0},
 };
 
 class SharpPoint : public testing::TestWithParam<Point> {};

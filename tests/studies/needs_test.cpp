@@ -43,10 +43,11 @@ TEST(FeatureSets, MakeOneImageOfAPlainScene) {
     settings.end_sample = 2;
     const std::string expected = render(recursive::RecursiveEngine(), scene, settings).hash();
     for (std::size_t i = 0; i < kFeatureSets.size(); ++i) {
-        for (const RenderFunction function :
-             {iterative_render(i), i < kFrontSets ? pool_render_front(i) : pool_render_back(i)}) {
-            const Rendered got = rendered_by(
-                scene, settings, [&](Framebuffer& framebuffer) { return function(scene, settings, framebuffer); });
+        for (const BeginFunction begin :
+             {iterative_begin(i), i < kFrontSets ? pool_begin_front(i) : pool_begin_back(i)}) {
+            const Rendered got = rendered_by(scene, settings, [&](Framebuffer& framebuffer) {
+                return render_whole(*begin(scene, settings, framebuffer), settings);
+            });
             EXPECT_EQ(got.hash(), expected) << kFeatureSets[i].name;
             if (got.report.record_bytes != 0) {
                 EXPECT_EQ(got.report.record_bytes, ray_record_bytes(kFeatureSets[i].needs, sizeof(float)));
@@ -74,10 +75,10 @@ TEST(FeatureSets, CanDoWhatTheirFeatureIs) {
         const std::string expected = render(recursive::RecursiveEngine(), compiled, settings).hash();
         for (std::size_t i = 0; i < kFeatureSets.size(); ++i) {
             if (kFeatureSets[i].name != names[0]) continue;
-            for (const RenderFunction function :
-                 {iterative_render(i), i < kFrontSets ? pool_render_front(i) : pool_render_back(i)}) {
+            for (const BeginFunction begin :
+                 {iterative_begin(i), i < kFrontSets ? pool_begin_front(i) : pool_begin_back(i)}) {
                 const Rendered got = rendered_by(compiled, settings, [&](Framebuffer& framebuffer) {
-                    return function(compiled, settings, framebuffer);
+                    return render_whole(*begin(compiled, settings, framebuffer), settings);
                 });
                 EXPECT_EQ(got.hash(), expected) << names[0];
             }

@@ -1,6 +1,11 @@
 /// The runner of studies: every repeat of every case once, in turn, whatever interrupts it; and no wrong image.
 #include "bench/studies/runner.h"
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
 #include <map>
 
 #include <fmt/format.h>
@@ -25,7 +30,7 @@ class Fake : public Study {
         const auto rows = [this](const char* id, std::vector<Row> made) {
             return [this, id, made] {
                 order.emplace_back(id);
-                if (order.size() == stop_after) is_stopped = true;
+                if (order.size() == stop_after) stop_signal = 15;
                 return made;
             };
         };
@@ -43,7 +48,7 @@ class Fake : public Study {
     const char* hash_of_b = "12";
     std::size_t stop_after = 0;
     mutable std::vector<std::string> order;
-    mutable std::atomic<bool> is_stopped = false;
+    mutable std::atomic<int> stop_signal = 0;
 };
 
 Table data_of(const ScratchFolder& folder) {
@@ -81,7 +86,7 @@ TEST(StudyRunner, ResumesWithoutLosingOrRepeatingARow) {
         const ScratchFolder folder;
         Fake first;
         first.stop_after = stop_after;
-        ASSERT_FALSE(run_study(first, {}, folder.path(), {false, &first.is_stopped, nullptr})) << stop_after;
+        ASSERT_FALSE(run_study(first, {}, folder.path(), {false, &first.stop_signal, nullptr})) << stop_after;
         const std::size_t kept = data_of(folder).rows().size();
         EXPECT_GE(kept, stop_after);
 
@@ -134,7 +139,7 @@ TEST(StudyRunner, DoesNotGoOnWithTheRunOfAnotherBuild) {
     const ScratchFolder folder;
     Fake first;
     first.stop_after = 3;
-    EXPECT_FALSE(run_study(first, {}, folder.path(), {false, &first.is_stopped, nullptr}));
+    EXPECT_FALSE(run_study(first, {}, folder.path(), {false, &first.stop_signal, nullptr}));
     change_commit(folder);
     EXPECT_THROW(run_study(Fake(), {}, folder.path(), {}), InputError);
     EXPECT_EQ(data_of(folder).rows().size(), 4U);  // and what there was is untouched
@@ -152,6 +157,79 @@ TEST(StudyRunner, RefusesToMixTwoRunsAndSaysWhatDiffers) {
         EXPECT_THAT(error.what(), testing::HasSubstr("options differs"));
     }
     EXPECT_TRUE(run_study(Fake(), other, folder.path(), {true, nullptr, nullptr}));
+}
+
+TEST(StudyRunner, RefusesRowsThatNoRunLeavesNamingTheLine) {
+    const ScratchFolder folder;
+    Fake first;
+    first.stop_after = 6;
+    EXPECT_FALSE(run_study(first, {}, folder.path(), {false, &first.stop_signal, nullptr}));
+    const std::string whole = file_text(folder / "data.csv");
+    const std::string header = whole.substr(0, whole.find('\n') + 1);
+    const struct {
+        std::string rows, refusal;
+    } cases[] = {{"a,0,0.5,12\na,0,0.5,12\n", "line 3: repeat 0 of a is there already"},
+                 {"a,0,0.5,12\nb,0,0.5,12\na,0,0.75,12\n", "line 4: repeat 0 of a is there already"},
+                 {"two rows,0,1,\ntwo rows,0,2,\ntwo rows,0,1,\n", "line 4: repeat 0 of two rows is there already"},
+                 {"c,0,0.5,12\n", "line 2: case c is none of this study"},
+                 {"a,3,0.5,12\n", "line 2: repeat 3 of a, which has 3"},
+                 {",0,0.5,12\n", "line 2: has no case"},
+                 {"a,0,nan,12\n", "line 2: value is nan"},
+                 {"a,0,0.5,12\nb,0,0.5,13\n", "line 3: b: the image has hash 13"}};
+    for (const auto& [rows, refusal] : cases) {
+        set_file_text(folder / "data.csv", header + rows);
+        try {
+            run_study(Fake(), {}, folder.path(), {});
+            ADD_FAILURE() << rows << " was taken";
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), testing::HasSubstr("data.csv: " + refusal));
+        }
+        EXPECT_EQ(file_text(folder / "data.csv"), header + rows);
+    }
+}
+
+TEST(StudyRunner, LeavesNoPartOfARepeatOnAFullDisk) {
+    const ScratchFolder folder;
+    Fake first;
+    first.stop_after = 2;
+    EXPECT_FALSE(run_study(first, {}, folder.path(), {false, &first.stop_signal, nullptr}));
+    const std::string before = file_text(folder / "data.csv");
+    const pid_t child = ::fork();
+    if (child == 0) {
+        std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit{before.size() + 15, before.size() + 15};  // the first of two rows has 13 bytes
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        try {
+            const std::vector<Case> cases = Fake().cases({});
+            std::vector<Column> columns{{"case", ColumnType::Text, ""}, {"repeat", ColumnType::Count, ""}};
+            for (const Column& column : Fake().columns()) columns.push_back(column);
+            RunData data(folder.path(), columns, cases);
+            data.load();
+            data.open();
+            data.add(cases[2], 0, cases[2].run());
+        } catch (const InputError&) {
+            ::_exit(0);
+        }
+        ::_exit(1);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+    EXPECT_EQ(file_text(folder / "data.csv"), before);
+    EXPECT_TRUE(run_study(Fake(), {}, folder.path(), {}));
+    EXPECT_EQ(counts(data_of(folder)), kComplete);
+}
+
+TEST(StudyRunner, KeepsOthersOutOfItsFolder) {
+    const ScratchFolder folder;
+    {
+        const FileLock lock = lock_folder(folder / "run");
+        EXPECT_THROW(static_cast<void>(lock_folder(folder / "run")), InputError);
+        EXPECT_TRUE(run_study(Fake(), {}, folder / "run", {}));
+        EXPECT_THROW(static_cast<void>(lock_folder(folder / "run")), InputError);
+        static_cast<void>(lock_folder(folder / "other"));
+    }
+    static_cast<void>(lock_folder(folder / "run"));
 }
 
 TEST(StudyRunner, KeepsNoRowOfAWrongImage) {

@@ -92,7 +92,7 @@ TEST_P(Exact, SumsDoNotDependOnOrderNorOnContention) {
         Framebuffer out = framebuffer();
         const auto accumulator = make_accumulator<float>(GetParam(), out, kThreads);
         add_all(*accumulator, out.fixed_point(), all, seed, needs_owned_pixels(GetParam()));
-        accumulator->finish();
+        merge_all(*accumulator);
         ASSERT_EQ(sums_of(out), expected);
     }
 }
@@ -106,7 +106,7 @@ TEST_P(Exact, SumsLeaveBadSamplesOutWholeAndAccountForThem) {
     some.put<float>(2, vec3<float>(1, std::numeric_limits<float>::quiet_NaN(), 1), 1);
     some.put<float>(3, vec3<float>(1, 1, std::numeric_limits<float>::infinity()), 1);
     accumulator->add(some, converter, 0);
-    accumulator->finish();
+    merge_all(*accumulator);
     EXPECT_EQ(converter.audit().non_finite, 2);
     EXPECT_EQ(sums_of(out), sums_of(framebuffer()));
 }
@@ -124,8 +124,8 @@ TEST_P(Rounded, SumsAreCloseToTheExactOnesAndReachTheFramebufferInTheEnd) {
     Framebuffer out = framebuffer();
     const auto accumulator = make_accumulator<float>(kind, out, kThreads);
     add_all(*accumulator, out.fixed_point(), all, 3, false);
-    EXPECT_EQ(sums_of(out), sums_of(framebuffer())) << "nothing is there before finish()";
-    accumulator->finish();
+    EXPECT_EQ(sums_of(out), sums_of(framebuffer())) << "nothing is there before merge()";
+    merge_all(*accumulator);
     for (std::size_t i = 0; i < expected.size(); ++i)
         EXPECT_NEAR(static_cast<double>(out.sums()[i]), static_cast<double>(expected[i]),
                     tolerance * static_cast<double>(expected[i]));
@@ -158,7 +158,8 @@ TEST(Accumulators, SayHowMuchMemoryTheyTakeBesideTheFramebuffer) {
     const auto bytes = [&](Accumulator kind) { return make_accumulator<float>(kind, out, kThreads)->bytes(); };
     EXPECT_EQ(bytes(Accumulator::OwnedInt64), 0U);
     EXPECT_EQ(bytes(Accumulator::AtomicInt64), 0U);
-    EXPECT_EQ(bytes(Accumulator::PrivateInt64), kThreads * 3 * kPixels * sizeof(std::int64_t));
+    EXPECT_EQ(bytes(Accumulator::PrivateInt64),
+              kThreads * (3 * kPixels * sizeof(std::int64_t) + block_count_of(kPixels)));
     EXPECT_EQ(bytes(Accumulator::OwnedPlanarInt64), 3 * kPixels * sizeof(std::int64_t));
     EXPECT_EQ(bytes(Accumulator::AtomicPlanarInt64), 3 * kPixels * sizeof(std::int64_t));
     EXPECT_EQ(bytes(Accumulator::AtomicFloat), 3 * kPixels * sizeof(float));

@@ -294,6 +294,29 @@ TEST_P(Splitting, MakesTheImageOfRecursionInMemoryThatDoesNotDependOnDepthOrSamp
 }
 INSTANTIATE_TEST_SUITE_P(Depths, Splitting, testing::Values(1, 2, 7));
 
+TEST(SharedPool, HandsOutBatchesByItsOwnScheduleWhateverThatOfTheImage) {
+    const CompiledScene<float> scene = compile<float>(small_scene("paper", 24));
+    RenderSettings settings = settings_of(4, 50, 2);
+    PoolSettings pool = shared_pool(256);
+    pool.batch = 64;
+    pool.batch_schedule = {LoopSchedule::Kind::Static, 1};
+    const auto segments_of_second_thread = [&](const LoopSchedule& schedule) {
+        settings.schedule = schedule;
+        return render_pool(scene, settings, pool).report.threads[1].segments;
+    };
+    for (const LoopSchedule schedule : {LoopSchedule{LoopSchedule::Kind::Static, 1}, {LoopSchedule::Kind::Static, 64}})
+        EXPECT_GT(segments_of_second_thread(schedule), 0);
+
+    pool.batch_schedule = {LoopSchedule::Kind::Static, 64};  // more than the batches that there are
+    EXPECT_EQ(segments_of_second_thread({LoopSchedule::Kind::Static, 1}), 0);
+}
+
+TEST(LoopOverTheImage, IsHadByAllButASharedPool) {
+    EXPECT_FALSE(WavefrontEngine(shared_pool()).loops_over_image());
+    EXPECT_TRUE(WavefrontEngine(PoolSettings{}).loops_over_image());
+    EXPECT_TRUE(recursive::RecursiveEngine().loops_over_image());
+}
+
 TEST(OwnedAccumulator, IsRefusedWithASharedPoolBeforeAnythingIsAdded) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 8));
     for (const Accumulator accumulator : {Accumulator::OwnedInt64, Accumulator::OwnedPlanarInt64}) {

@@ -1,0 +1,87 @@
+#include "cli/option_rules.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace raypool::cli {
+
+namespace {
+
+enum class Rule : std::uint8_t {
+    Needs,    ///< nothing comes of the option without the other one
+    Excludes  ///< nothing comes of it beside the other one
+};
+
+struct OptionRule {
+    std::string_view command;
+    std::string_view option;
+    Rule rule;
+    std::string_view other;
+    std::string_view value;  ///< of the other option; empty: any
+    std::string_view why;    ///< may be empty
+};
+
+constexpr std::string_view kOwnLoop = "its batches are handed out to whichever thread is free";
+constexpr std::string_view kListsOnly = "the studies are only listed then";
+
+constexpr OptionRule kRules[] = {
+    {"render", "--pool-scope", Rule::Needs, "--engine", "wavefront", ""},
+    {"render", "--pool-rays", Rule::Needs, "--engine", "wavefront", ""},
+    {"render", "--pool-batch", Rule::Needs, "--engine", "wavefront", ""},
+    {"render", "--refill", Rule::Needs, "--engine", "wavefront", ""},
+    {"render", "--stage-width", Rule::Needs, "--engine", "wavefront", ""},
+    {"render", "--intersect", Rule::Needs, "--engine", "wavefront", ""},
+    {"render", "--camera", Rule::Needs, "--engine", "wavefront", ""},
+    {"render", "--sort", Rule::Needs, "--engine", "wavefront", ""},
+    {"render", "--append", Rule::Needs, "--engine", "wavefront", ""},
+    {"render", "--accumulator", Rule::Needs, "--engine", "wavefront", ""},
+    {"render", "--pool-batch", Rule::Needs, "--pool-scope", "shared", "the pool of a thread is one batch"},
+    {"render", "--append", Rule::Needs, "--pool-scope", "shared", "the pool of a thread moves no record"},
+    {"render", "--schedule", Rule::Excludes, "--pool-scope", "shared", kOwnLoop},
+    {"render", "--grain", Rule::Excludes, "--pool-scope", "shared", kOwnLoop},
+    {"render", "--intersect", Rule::Excludes, "--stage-width", "scalar", "rays are then taken one by one"},
+    {"render", "--samples", Rule::Excludes, "--target-error", "", "which samples a pixel gets is for it to decide"},
+    {"render", "--every", Rule::Needs, "--checkpoint", "", ""},
+    {"render", "--resume", Rule::Needs, "--checkpoint", "", "that is the file to go on from"},
+    {"render", "--cost", Rule::Needs, "--cost-image", "", ""},
+    {"compare", "--repeats", Rule::Excludes, "--check", "", "each engine then runs once"},
+    {"advise", "--target-error", Rule::Excludes, "--target-time", "", "one of them is what is asked for"},
+    {"study", "--quick", Rule::Needs, "name", "", kListsOnly},
+    {"study", "--out", Rule::Needs, "name", "", kListsOnly},
+    {"study", "--fresh", Rule::Needs, "name", "", kListsOnly},
+    {"study", "--scene", Rule::Needs, "name", "", kListsOnly},
+    {"study", "--width", Rule::Needs, "name", "", kListsOnly},
+    {"study", "--spp", Rule::Needs, "name", "", kListsOnly},
+    {"study", "--depth", Rule::Needs, "name", "", kListsOnly},
+    {"study", "--threads", Rule::Needs, "name", "", kListsOnly},
+    {"study", "--repeats", Rule::Needs, "name", "", kListsOnly},
+    {"study", "--seed", Rule::Needs, "name", "", kListsOnly},
+    {"study", "--quiet", Rule::Needs, "name", "", kListsOnly},
+    {"study", "--scene", Rule::Excludes, "name", "stability", "its cases are scenes of their own"},
+    {"study", "--depth", Rule::Excludes, "name", "adaptive", "it renders at depth 50"},
+    {"study", "--threads", Rule::Excludes, "name", "ranks", "its ranks have one thread each"},
+};
+
+bool is_given(const CLI::App& command, std::string_view option, std::string_view value) {
+    const CLI::Option& found = *command.get_option(std::string(option));
+    return found.count() > 0 && (value.empty() || found.results().front() == value);
+}
+
+}  // namespace
+
+void check_option_rules(const CLI::App& command) {
+    for (const OptionRule& rule : kRules) {
+        if (rule.command != command.get_name() || !is_given(command, rule.option, "")) continue;
+        if (is_given(command, rule.other, rule.value) == (rule.rule == Rule::Needs)) continue;
+        throw InputError(
+            fmt::format("{}: does nothing {} {}{}{}{}{}", rule.option, rule.rule == Rule::Needs ? "without" : "beside",
+                        rule.other, rule.value.empty() ? "" : " ", rule.value, rule.why.empty() ? "" : ": ", rule.why));
+    }
+}
+
+}  // namespace raypool::cli

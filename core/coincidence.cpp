@@ -1,0 +1,275 @@
+#include "core/coincidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+
+#include "core/quad_index.h"
+#include "core/shape_bounds.h"
+
+namespace raypool {
+
+namespace {
+
+/// The unit roundoff: an operation's relative error in Scalar is at most this.
+template <class Scalar>
+constexpr double kRoundoff = 0.5 * static_cast<double>(std::numeric_limits<Scalar>::epsilon());
+
+/// How exactly a shape is described, as a part of its coordinates: they are in double, and come from a sum of a product
+/// or two, such as a rotation; another such sum gives normals and corners. Of the order of what is left of them where a
+/// plane is across an axis or near the origin; in float it adds nothing elsewhere.
+constexpr double kDescribed = 8 * kRoundoff<double>;
+
+/// The length of no segment between finite shapes and the camera is greater.
+double scene_diagonal(const Scene& scene) {
+    Box all{scene.camera.look_from, scene.camera.look_from};
+    for (const Sphere& sphere : scene.spheres)
+        for (const Vector3d& c : {sphere.center0, sphere.center1})
+            all.extend({c.array() - sphere.radius, c.array() + sphere.radius});
+    for (const Quad& quad : scene.quads)
+        for_each_corner(quad, [&](const Vector3d& corner) { all.extend({corner, corner}); });
+    for (const Plane& plane : scene.planes) {
+        const Vector3d nearest = flat_shape(plane).point;
+        all.extend({nearest, nearest});
+    }
+    return (all.high - all.low).norm();
+}
+
+/// By how much a plane and a flat shape may differ at `x`, along the plane's normal n, for rounding to decide which of
+/// the two a ray from the other meets. `a` and `b` are the points that the two are stored by. In units of roundoff:
+///
+///   a start on the one, put back onto its plane: |a| for the point stored, |x - a| for the normal stored, |x - a| for
+///   the difference and 3 |x - a| for the three operations of the dot product, |x| for the point moved;
+///   the other's side, as its distance sees it: |b|, and 5 |x - b| in the same way;
+///   in double, |a|, |b| and |x| once more, as all three are sums of a corner and parts of edges;
+///
+/// each weighted by |n|, axis by axis, so that a plane across an axis is known to an ulp of one coordinate. To this
+/// comes what putting back leaves of the ray's own error: that was at most 9 diagonals before (7 from the distance, one
+/// for each operation of o + t d), and is multiplied by at most 7 roundoffs (4 as above, 2 for the normal's length, 1).
+template <class Scalar>
+double flat_bound(const Vector3d& x, const Vector3d& n, const Vector3d& a, const Vector3d& b, double diagonal) {
+    constexpr double u = kRoundoff<Scalar>;
+    const Vector3d weight = n.cwiseAbs();
+    const double first_order = 2 * weight.dot(a.cwiseAbs() + b.cwiseAbs() + x.cwiseAbs()) +
+                               5 * weight.dot((x - a).cwiseAbs() + (x - b).cwiseAbs());
+    return u * first_order + 63 * u * u * diagonal;
+}
+
+/// The same for two spheres, any normal: a bound of |centre - centre'| + |radius - radius'|. In units of roundoff:
+/// twice the distance of each centre from the origin, with its way (stored, and moved to a time); the distance of a hit
+/// from the origin; and 20 radii: 2 for the radii stored, 4 for the unit normal or, where a hit is not put back, 13 for
+/// its distance (5 for c, whose terms reach (2 r)^2, over 2 r, and 3 for the root), and 5 for the side that the other
+/// sees.
+template <class Scalar>
+double sphere_bound(const Sphere& a, const Sphere& b) {
+    const auto reach = [](const Sphere& s) { return s.center0.norm() + (s.center1 - s.center0).norm(); };
+    const double radius = std::max(a.radius, b.radius);
+    return kRoundoff<Scalar> * (2 * (reach(a) + reach(b)) + std::max(reach(a), reach(b)) + 21 * radius);
+}
+
+/// Finds things that are nearly equal by a key of theirs: a sum of their numbers with coefficients that no scene has.
+class NearbyKeys {
+  public:
+    /// The first listed of those added whose key is within `window` and that `is_equal`.
+    template <class IsEqual>
+    [[nodiscard]] std::optional<std::uint32_t> find(double key, double window, IsEqual is_equal) const {
+        std::optional<std::uint32_t> first;
+        const auto end = by_key_.upper_bound(key + window);
+        for (auto at = by_key_.lower_bound(key - window); at != end; ++at)
+            if ((!first || at->second < *first) && is_equal(at->second)) first = at->second;
+        return first;
+    }
+    void add(double key, std::uint32_t index) { by_key_.emplace(key, index); }
+
+  private:
+    std::multimap<double, std::uint32_t> by_key_;
+};
+
+/// Directions within the unit cube, at odds with axes and lattices.
+const Vector3d kKeyA(0.8414709848, 0.4546487134, 0.9893582466);
+const Vector3d kKeyB(0.6569865987, 0.2794154982, 0.7568024953);
+
+template <class Scalar>
+class Finder {
+  public:
+    explicit Finder(const Scene& scene) : scene_(scene), out_(no_coincidence(scene)), diagonal_(scene_diagonal(scene)) {
+        for (const Quad& quad : scene.quads)
+            described_.push_back(kDescribed * (quad.corner.norm() + quad.edge_u.norm() + quad.edge_v.norm()));
+        for (const Plane& plane : scene.planes) described_.push_back(kDescribed * plane.point.norm());
+    }
+
+    Coincidence find() {
+        hide_spheres();
+        hide_planes();
+        if (!scene_.quads.empty()) group_quads();
+        return std::move(out_);
+    }
+
+  private:
+    /// A sphere that is where an earlier one is, when the shutter opens and when it closes, is there at all times.
+    void hide_spheres() {
+        const auto center = [](const Sphere& s, double time) -> Vector3d {
+            return s.center0 + time * (s.center1 - s.center0);
+        };
+        const double open = scene_.camera.shutter_open;
+        const double close = scene_.camera.shutter_close;
+        const auto coincide = [&](const Sphere& a, const Sphere& b) {
+            const double bound = sphere_bound<Scalar>(a, b) - std::abs(a.radius - b.radius);
+            return (center(a, open) - center(b, open)).norm() <= bound &&
+                   (center(a, close) - center(b, close)).norm() <= bound;
+        };
+        NearbyKeys kept;
+        for (std::uint32_t i = 0; i < scene_.spheres.size(); ++i) {
+            const Sphere& sphere = scene_.spheres[i];
+            const double key =
+                kKeyA.dot(center(sphere, open)) + kKeyB.dot(center(sphere, close)) + 0.5436 * sphere.radius;
+            // The coefficients add up to less than 5, and the bounds of spheres that coincide differ by far less
+            // than 2.
+            const double window = 10 * sphere_bound<Scalar>(sphere, sphere);
+            if (kept.find(key, window, [&](std::uint32_t k) { return coincide(scene_.spheres[k], sphere); })) {
+                out_.is_hidden[i] = true;
+            } else {
+                kept.add(key, i);
+            }
+        }
+    }
+
+    /// Planes coincide where the bound holds at all points of both: their normals and one point each see to it.
+    [[nodiscard]] bool planes_coincide(std::uint32_t plane_a, std::uint32_t plane_b) const {
+        constexpr double u = kRoundoff<Scalar>;
+        const Coincidence::Flat& a = out_.flats[scene_.quads.size() + plane_a];
+        const Coincidence::Flat& b = out_.flats[scene_.quads.size() + plane_b];
+        const Vector3d normal = a.normal.dot(b.normal) < 0 ? Vector3d(-b.normal) : b.normal;
+        for (int i = 0; i < 3; ++i) {
+            const double most = 5 * u * (std::abs(a.normal[i]) + std::abs(normal[i])) + 63 * u * u + kDescribed;
+            if (!(std::abs(a.normal[i] - normal[i]) <= most)) return false;
+        }
+        return std::abs(a.normal.dot(b.point - a.point)) <=
+               flat_bound<Scalar>(b.point, a.normal, a.point, b.point, diagonal_) +
+                   described_[scene_.quads.size() + plane_a] + described_[scene_.quads.size() + plane_b];
+    }
+
+    void hide_planes() {
+        const auto first_plane = static_cast<std::uint32_t>(scene_.quads.size());
+        NearbyKeys kept;
+        for (std::uint32_t i = 0; i < scene_.planes.size(); ++i) {
+            const Coincidence::Flat& flat = out_.flats[first_plane + i];
+            const Vector3d& n = flat.normal;  // the key is the same for -n
+            const double key = kKeyA.dot(flat.point) + kKeyB.dot(n.cwiseProduct(n)) +
+                               kKeyA.dot(Vector3d(n[1] * n[2], n[2] * n[0], n[0] * n[1]));
+            constexpr double u = kRoundoff<Scalar>;
+            const double window = 200 * u * (1 + flat.point.norm() + u * diagonal_) + 10 * described_[first_plane + i];
+            if (kept.find(key, window, [&](std::uint32_t k) { return planes_coincide(k, i); })) {
+                out_.is_hidden[id(first_plane + i)] = true;
+            } else {
+                kept.add(key, i);
+            }
+        }
+    }
+
+    /// Whether all of a quad lies in the plane of normal n through `on_plane`, where that is also stored.
+    [[nodiscard]] bool lies_in(const Vector3d& n, const Vector3d& on_plane, double plane_error,
+                               std::uint32_t quad) const {
+        bool is_in = true;
+        for_each_corner(scene_.quads[quad], [&](const Vector3d& x) {
+            if (!is_in) return;
+            const double bound = flat_bound<Scalar>(x, n, on_plane, out_.flats[quad].point, diagonal_);
+            is_in = std::abs(n.dot(x - on_plane)) <= bound + plane_error + described_[quad];
+        });
+        return is_in;
+    }
+
+    void share(std::uint32_t quad, const Vector3d& point, const Vector3d& normal, std::uint32_t group) {
+        Coincidence::Flat& flat = out_.flats[quad];
+        flat = {point, flat.normal.dot(normal) < 0 ? Vector3d(-normal) : normal, group};
+    }
+
+    /// Quads join a plane that they lie in or else, the largest first, the largest quad that they touch and whose plane
+    /// they lie in, directly or over others that do: the larger shape has the more exact normal.
+    void group_quads() {
+        std::vector<Box> boxes;
+        boxes.reserve(scene_.quads.size());
+        for (const Quad& quad : scene_.quads) boxes.push_back(quad_box<Scalar>(quad));
+        QuadIndex quads(std::move(boxes));
+
+        constexpr double kFar = std::numeric_limits<double>::infinity();
+        const Box everywhere{Vector3d::Constant(-kFar), Vector3d::Constant(kFar)};
+        for (std::size_t i = 0; i < scene_.planes.size(); ++i) {
+            const auto index = static_cast<std::uint32_t>(scene_.quads.size() + i);
+            if (out_.is_hidden[id(index)]) continue;
+            const Coincidence::Flat plane = out_.flats[index];
+            quads.for_each_near(everywhere, plane.point, plane.normal, [&](std::uint32_t quad) {
+                if (!lies_in(plane.normal, plane.point, described_[index], quad)) return;
+                quads.take(quad);
+                share(quad, plane.point, plane.normal, plane.group);
+                if (static_cast<std::int64_t>(quad) >= scene_.planes[i].quads_before) out_.is_hidden[id(quad)] = true;
+            });
+        }
+
+        std::vector<double> area;
+        area.reserve(scene_.quads.size());
+        for (const Quad& quad : scene_.quads) area.push_back(quad.edge_u.cross(quad.edge_v).norm());
+        std::vector<std::uint32_t> by_area(scene_.quads.size());
+        std::iota(by_area.begin(), by_area.end(), 0U);
+        std::stable_sort(by_area.begin(), by_area.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return area[a] > area[b]; });
+        for (const std::uint32_t first : by_area)
+            if (!quads.is_taken(first)) group_from(first, quads);
+    }
+
+    void group_from(std::uint32_t first, QuadIndex& quads) {
+        const Coincidence::Flat plane = out_.flats[first];
+        const auto onto_plane = [&](const Vector3d& x) -> Vector3d {
+            return x - plane.normal.dot(x - plane.point) * plane.normal;
+        };
+        quads.take(first);
+        std::vector<std::uint32_t> members{first};
+        Vector3d nearest = plane.point;
+        for (std::size_t i = 0; i < members.size(); ++i) {
+            const std::uint32_t member = members[i];
+            const Vector3d point = i == 0 ? plane.point : onto_plane(out_.flats[member].point);
+            if (point.norm() < nearest.norm()) nearest = point;
+            quads.for_each_near(quads.box(member), plane.point, plane.normal, [&](std::uint32_t quad) {
+                if (!lies_in(plane.normal, point, described_[first], quad)) return;
+                quads.take(quad);
+                members.push_back(quad);
+            });
+        }
+        if (members.size() == 1) return;
+        for (const std::uint32_t member : members) share(member, nearest, plane.normal, plane.group);
+    }
+
+    [[nodiscard]] std::size_t id(std::size_t flat) const { return scene_.spheres.size() + flat; }
+
+    const Scene& scene_;
+    Coincidence out_;
+    double diagonal_;
+    std::vector<double> described_;  ///< by flat shape: how far off its plane its own description may be
+};
+
+}  // namespace
+
+Coincidence no_coincidence(const Scene& scene) {
+    Coincidence out;
+    const auto add = [&](const FlatShape& shape) {
+        const auto id = static_cast<std::uint32_t>(scene.spheres.size() + out.flats.size());
+        out.flats.push_back({shape.point, shape.normal, id});
+    };
+    for (const Quad& quad : scene.quads) add(flat_shape(quad));
+    for (const Plane& plane : scene.planes) add(flat_shape(plane));
+    out.is_hidden.resize(scene.spheres.size() + out.flats.size());
+    return out;
+}
+
+template <class Scalar>
+Coincidence find_coincidence(const Scene& scene) {
+    return Finder<Scalar>(scene).find();
+}
+
+template Coincidence find_coincidence<float>(const Scene&);
+template Coincidence find_coincidence<double>(const Scene&);
+
+}  // namespace raypool

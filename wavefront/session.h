@@ -1,0 +1,93 @@
+/// What the sessions of all pools share: the accumulator, the settings of a unit, the check of the memory, the report.
+///
+/// All memory is taken when a session is made. A unit takes none, so nothing is thrown where threads wait for each
+/// other.
+#pragma once
+
+#include <omp.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "core/engine.h"
+#include "core/loop.h"
+#include "core/memory.h"
+#include "wavefront/accumulator.h"
+#include "wavefront/stages.h"
+
+namespace raypool::wavefront {
+
+template <class Scalar>
+class PoolSession : public RenderSession {
+  public:
+    PoolSession(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const PoolSettings& pool,
+                Framebuffer& framebuffer, std::size_t record_bytes)
+        : begin_s_(omp_get_wtime()),
+          settings_(settings),
+          pool_(pool),
+          accumulator_(make_accumulator<Scalar>(pool.accumulator, framebuffer, settings.threads)),
+          context_{
+              scene,        settings_, pool_, random_seed(settings.seed, settings.sampler), framebuffer.fixed_point(),
+              *accumulator_} {
+        report_.record_bytes = record_bytes;
+    }
+
+  protected:
+    /// Renders the unit, which has paths.
+    virtual RenderReport run(const RenderUnit& unit) = 0;
+    /// What a thread logged of the unit.
+    [[nodiscard]] virtual const std::vector<RoundWork>& rounds(std::size_t thread) const = 0;
+
+    /// Of a session that is made: the settings' threads are those that OpenMP gives.
+    [[nodiscard]] const RenderContext<Scalar>& context() const { return context_; }
+    /// Records of a pool. A path can become 2^split_depth of them.
+    [[nodiscard]] std::size_t capacity() const {
+        return std::max<std::size_t>(static_cast<std::size_t>(pool_.capacity), std::size_t{1} << settings_.split_depth);
+    }
+
+    /// Refuses `pool_bytes` for pools and stages, and what the accumulator takes, where there is not as much.
+    void check_memory(std::size_t pool_bytes) {
+        report_.pool_bytes = pool_bytes + accumulator_->bytes();
+        check_available(report_.pool_bytes,
+                        "--pool-rays, --threads, --accumulator: the pools, the stages' memory and the accumulator");
+    }
+    /// Calls make(thread) in each thread, and ends the setup.
+    template <class Make>
+    void finish_setup(Make make) {
+        settings_.threads = make_by_threads(settings_, make);
+        report_.threads.resize(static_cast<std::size_t>(settings_.threads));
+        count_setup(settings_, begin_s_, settings_.threads, report_);
+    }
+
+  private:
+    RenderReport render(const RenderUnit& unit) final {
+        if (path_count(context_.scene, unit) == 0) return {};
+        RenderReport report = run(unit);
+        for (std::size_t thread = 0; thread < report.threads.size(); ++thread) {  // added up by their number
+            const std::vector<RoundWork>& logged = rounds(thread);
+            if (logged.size() > report.rounds.size()) report.rounds.resize(logged.size());
+            for (std::size_t i = 0; i < logged.size(); ++i) report.rounds[i].add(logged[i]);
+        }
+        return report;
+    }
+
+    RenderReport collect() final {
+        if (accumulator_->bytes() == 0) return {};  // it adds to the framebuffer itself
+        return run_threads(settings_, [&](ThreadWork&, SampleAudit&) {
+            const double begin = omp_get_wtime();
+#pragma omp for schedule(static) nowait
+            for (std::size_t block = 0; block < accumulator_->block_count(); ++block) accumulator_->merge(block);
+            if (settings_.trace != nullptr)
+                settings_.trace->lane(omp_get_thread_num()).span("merge", begin, omp_get_wtime());
+        });
+    }
+
+    double begin_s_;
+    RenderSettings settings_;
+    PoolSettings pool_;
+    std::unique_ptr<AccumulatorBase<Scalar>> accumulator_;
+    RenderContext<Scalar> context_;
+};
+
+}  // namespace raypool::wavefront
