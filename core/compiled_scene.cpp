@@ -16,6 +16,15 @@ namespace {
 /// A sphere is tested up front when its box is more than this part of the box of all smaller ones.
 constexpr double kLargeArea = 0.01;
 
+enum class Shape : std::uint8_t { Sphere, Quad, Plane };
+
+ImageRepeat image_repeat(Texture::Wrap wrap, Shape shape) {
+    if (wrap == Texture::Wrap::Clamp) return {};
+    if (shape == Shape::Sphere) return {.u = true, .v = false};
+    const bool repeats = wrap == Texture::Wrap::Repeat || shape == Shape::Plane;
+    return {.u = repeats, .v = repeats};
+}
+
 template <class Scalar>
 class Compiler {
   public:
@@ -89,7 +98,7 @@ class Compiler {
         }
     }
 
-    SurfaceRow<Scalar> surface_row(int material_id) {
+    SurfaceRow<Scalar> surface_row(int material_id, Shape shape) {
         using Row = SurfaceRow<Scalar>;
         const Material& material = scene_.materials[material_id];
         Row row{};
@@ -103,6 +112,7 @@ class Compiler {
         row.value[Row::kParameter] = static_cast<Scalar>(material.fuzz);
         for (int i = 0; i < 3; ++i) row.value[Row::kColour + i] = static_cast<Scalar>(texture.even[i]);
         row.value[Row::kTexture] = static_cast<Scalar>(texture.kind);
+        if (texture.image) row.value[Row::kTexture] += Scalar(image_repeat(texture.wrap, shape).number());
         row.value[Row::kTextureRow] = static_cast<Scalar>(material.texture_id);
         const double brightest = texture.image ? 1 : std::max(texture.even.maxCoeff(), texture.odd.maxCoeff());
         double& most = material.kind == Material::Kind::Emissive ? out_.max_radiance : out_.max_albedo;
@@ -113,7 +123,7 @@ class Compiler {
     void add_surfaces() {
         using Row = SurfaceRow<Scalar>;
         for (const Sphere& sphere : scene_.spheres) {
-            Row row = surface_row(sphere.material_id);
+            Row row = surface_row(sphere.material_id, Shape::Sphere);
             for (int i = 0; i < 3; ++i) {
                 row.value[Row::kCenter + i] = static_cast<Scalar>(sphere.center0[i]);
                 row.value[Row::kMotion + i] = static_cast<Scalar>(sphere.center1[i] - sphere.center0[i]);
@@ -122,12 +132,12 @@ class Compiler {
             row.value[Row::kGroup] = static_cast<Scalar>(out_.surfaces.size());
             out_.surfaces.push_back(row);
         }
-        for (const Quad& quad : scene_.quads) add_flat_surface(flat_shape(quad));
-        for (const Plane& plane : scene_.planes) add_flat_surface(flat_shape(plane));
+        for (const Quad& quad : scene_.quads) add_flat_surface(flat_shape(quad), Shape::Quad);
+        for (const Plane& plane : scene_.planes) add_flat_surface(flat_shape(plane), Shape::Plane);
     }
 
-    void add_flat_surface(const FlatShape& shape) {
-        SurfaceRow<Scalar> surface = surface_row(shape.material_id);
+    void add_flat_surface(const FlatShape& shape, Shape kind) {
+        SurfaceRow<Scalar> surface = surface_row(shape.material_id, kind);
         FlatRow<Scalar> flat{};
         const Coincidence::Flat& met = coincidence_.flats[out_.flats.size()];
         surface.value[SurfaceRow<Scalar>::kGroup] = static_cast<Scalar>(met.group);

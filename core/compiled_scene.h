@@ -27,7 +27,7 @@ struct alignas(16 * sizeof(Scalar)) SurfaceRow {
         kParameter = 7,  ///< fuzz of metal, index of refraction of glass
         kColour = 8,     ///< three: albedo or radiance; of a checker the even colour
         kMaterial = 11,  ///< Material::Kind
-        kTexture = 12,   ///< Texture::Kind
+        kTexture = 12,   ///< Texture::Kind; of an image its number plus ImageRepeat's
         kTextureRow = 13,
         kFlatRow = 14,
         kGroup = 15,  ///< what a ray that leaves the primitive leaves: its id, or that of the shapes in one plane

@@ -20,6 +20,7 @@
 #include <array>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -56,14 +57,21 @@ class MemoryOutput final : public Imf::OStream {
 
 class MemoryInput final : public Imf::IStream {
   public:
-    explicit MemoryInput(BytesView bytes) : IStream("the file"), bytes_(bytes) {}
+    /// A byte at a place in `hidden` (ascending) is read as '?'; both must outlive this.
+    MemoryInput(BytesView bytes, std::span<const std::size_t> hidden)
+        : IStream("the file"), bytes_(bytes), hidden_(hidden) {}
 
     bool read(char target[], int size) override {
         if (position_ > bytes_.size() || static_cast<std::size_t>(size) > bytes_.size() - position_) {
             throw std::runtime_error("the file ends too early");
         }
         std::memcpy(target, bytes_.data() + position_, static_cast<std::size_t>(size));
-        position_ += static_cast<std::size_t>(size);
+        const std::size_t end = position_ + static_cast<std::size_t>(size);
+        for (auto place = std::lower_bound(hidden_.begin(), hidden_.end(), position_);
+             place != hidden_.end() && *place < end; ++place) {
+            target[*place - position_] = '?';
+        }
+        position_ = end;
         return position_ < bytes_.size();
     }
     StreamPosition tellg() override { return position_; }
@@ -71,6 +79,7 @@ class MemoryInput final : public Imf::IStream {
 
   private:
     BytesView bytes_;
+    std::span<const std::size_t> hidden_;
     std::size_t position_ = 0;
 };
 
@@ -93,13 +102,14 @@ std::int64_t rows_of_block(const Imf::Header& header) {
     return header.compression() == Imf::DWAB_COMPRESSION ? 256 : 32;
 }
 
-/// Checks what OpenEXR would take at its word when it reserves memory for a part of a file of so many bytes.
-void check_part(const Imf::Header& header, std::int64_t channel_count, std::int64_t file_bytes) {
-    constexpr std::int64_t kLeastChunkBytes = 8;  // its place in the table of chunks
+/// Checks what OpenEXR would take at its word when it reserves memory for a part of a file of so many bytes; returns
+/// the number of chunks.
+std::int64_t check_part(const Imf::Header& header, std::int64_t channel_count, std::int64_t file_bytes) {
     const std::int64_t width = width_of(header.dataWindow());
     const std::int64_t height = height_of(header.dataWindow());
     check_image_size(width, height, kMaxImageSide);
     std::int64_t block_width = width;
+    std::int64_t chunk_count = (height + rows_of_block(header) - 1) / rows_of_block(header);
     if (header.hasTileDescription()) {
         const Imf::TileDescription& tile = header.tileDescription();
         if (tile.xSize < 1 || tile.ySize < 1 || tile.xSize > kMaxImageSide || tile.ySize > kMaxImageSide)
@@ -107,26 +117,32 @@ void check_part(const Imf::Header& header, std::int64_t channel_count, std::int6
                                                  tile.xSize, tile.ySize));
         const std::int64_t columns = (width + tile.xSize - 1) / tile.xSize;
         const std::int64_t rows = (height + tile.ySize - 1) / tile.ySize;
-        if (columns * rows > file_bytes / kLeastChunkBytes) throw std::runtime_error("the file ends too early");
+        chunk_count = columns * rows;
         block_width = columns * tile.xSize;
     }
-    if (header.hasChunkCount() && (header.chunkCount() < 0 || header.chunkCount() > file_bytes / kLeastChunkBytes))
-        throw std::runtime_error("the file ends too early");
-    if (block_width * channel_count * rows_of_block(header) > kMaxExrBlockValues)
+    if (header.hasChunkCount()) chunk_count = std::max<std::int64_t>(chunk_count, header.chunkCount());
+    const std::int64_t most_values = std::max(kMaxExrBlockValues, kMaxExrExpansion * file_bytes);
+    if (block_width * channel_count * rows_of_block(header) > most_values)
         throw std::runtime_error(
             fmt::format("a block of rows must have at most {} values, got {} columns of {} channels in {} rows",
-                        kMaxExrBlockValues, block_width, channel_count, rows_of_block(header)));
+                        most_values, block_width, channel_count, rows_of_block(header)));
+    return chunk_count;
 }
 
-void check_headers(BytesView bytes) {
+/// Returns what MemoryInput is to hide.
+std::vector<std::size_t> check_headers(BytesView bytes) {
+    constexpr std::int64_t kLeastChunkBytes = 8;  // its place in the table of chunks
     ExrHeader headers = check_exr_header(bytes);
-    MemoryInput stream(bytes);
+    MemoryInput stream(bytes, headers.hidden);
     stream.seekg(sizeof kExrMagic + sizeof headers.version);
+    std::int64_t chunk_count = 0;  // of all parts, since each has a table
     for (const std::int64_t channel_count : headers.channel_counts) {
         Imf::Header header;
         header.readFrom(stream, headers.version);
-        check_part(header, channel_count, std::ssize(bytes));
+        chunk_count += check_part(header, channel_count, std::ssize(bytes));
+        if (chunk_count > std::ssize(bytes) / kLeastChunkBytes) throw std::runtime_error("the file ends too early");
     }
+    return std::move(headers.hidden);
 }
 
 /// The channels that make a pixel.
@@ -213,8 +229,8 @@ Image read_layer(Imf::MultiPartInputFile& file, const Layer& layer) {
 }
 
 /// Luminance with chroma of fewer pixels, as OpenEXR turns it into RGB.
-Image read_luminance_and_chroma(BytesView bytes, const Imf::Header& header) {
-    MemoryInput stream(bytes);
+Image read_luminance_and_chroma(BytesView bytes, std::span<const std::size_t> hidden, const Imf::Header& header) {
+    MemoryInput stream(bytes, hidden);
     Imf::RgbaInputFile file(stream);
     std::vector<Imf::Rgba> pixels;
     return read_rows(header, [&](const Window& rows, float* first) {
@@ -281,8 +297,8 @@ Bytes encode_exr(const Image& image, const ImageAttributes& attributes) {
 }
 
 ImageContents decode_exr(BytesView bytes) {
-    check_headers(bytes);
-    MemoryInput stream(bytes);
+    const std::vector<std::size_t> hidden = check_headers(bytes);
+    MemoryInput stream(bytes, hidden);
     Imf::MultiPartInputFile file(stream);
     const Layer layer = find_layer(file);
     const Imf::Header& header = file.header(layer.part);
@@ -297,7 +313,7 @@ ImageContents decode_exr(BytesView bytes) {
         const bool is_of_format = std::string_view(entry.name()) == "type" || std::string_view(entry.name()) == "name";
         if (text != nullptr && !is_of_format) contents.attributes.emplace(entry.name(), text->value());
     }
-    contents.image = layer.has_chroma ? read_luminance_and_chroma(bytes, header) : read_layer(file, layer);
+    contents.image = layer.has_chroma ? read_luminance_and_chroma(bytes, hidden, header) : read_layer(file, layer);
     return contents;
 }
 

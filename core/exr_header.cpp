@@ -85,8 +85,8 @@ void take_preview(Walk& value) {
     value.take(texels > SIZE_MAX / kTexelBytes ? SIZE_MAX : texels * kTexelBytes);
 }
 
-/// Takes what OpenEXR would take for a value of the type.
-void take_value(std::string_view type, Walk& value, std::size_t size, std::int64_t& channel_count) {
+/// Takes what OpenEXR would take for a value of the type. False if the type is none that all its versions read alike.
+bool take_value(std::string_view type, Walk& value, std::size_t size, std::int64_t& channel_count) {
     const auto* const fixed = std::find_if(kFixedTypes.begin(), kFixedTypes.end(),
                                            [&](const FixedType& candidate) { return candidate.name == type; });
     if (fixed != kFixedTypes.end()) {
@@ -101,17 +101,21 @@ void take_value(std::string_view type, Walk& value, std::size_t size, std::int64
         take_preview(value);
     } else {
         value.take(size);
+        return type == "string";
     }
+    return true;
 }
 
-/// The attributes of a part, up to the empty name behind them. Returns the number of channels.
-std::int64_t take_part(Walk& walk, std::string_view first_name) {
+/// The attributes of a part, up to the empty name behind them. Returns the number of channels; notes the types that
+/// are to be hidden, by their place after `begin`.
+std::int64_t take_part(Walk& walk, std::string_view first_name, const char* begin, std::vector<std::size_t>& hidden) {
     std::int64_t channel_count = 0;
     for (std::string_view name = first_name; !name.empty(); name = walk.take_name()) {
         const std::string_view type = walk.take_name();
         const std::string_view content = walk.take_sized();
         Walk value(content);
-        take_value(type, value, content.size(), channel_count);
+        if (!take_value(type, value, content.size(), channel_count) && !type.empty())
+            hidden.push_back(static_cast<std::size_t>(type.data() - begin));
         if (!value.is_at_end()) throw std::runtime_error("an attribute is longer than its type");
     }
     return channel_count;
@@ -123,17 +127,18 @@ ExrHeader check_exr_header(BytesView bytes) {
     constexpr std::int32_t kNumber = 0xff;
     constexpr std::int32_t kManyParts = 0x1000;
     constexpr std::int32_t kKnownFlags = 0x200 | 0x400 | 0x800 | kManyParts;  // tiles, long names, deep data
-    Walk walk({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    const auto* const begin = reinterpret_cast<const char*>(bytes.data());
+    Walk walk({begin, bytes.size()});
     if (walk.take_int() != kExrMagic) throw std::runtime_error("not an EXR file");
-    ExrHeader header{walk.take_int(), {}};
+    ExrHeader header{walk.take_int(), {}, {}};
     if ((header.version & kNumber) != 2 || (header.version & ~(kNumber | kKnownFlags)) != 0)
         throw std::runtime_error("of a version of EXR that is not read");
     if ((header.version & kManyParts) == 0) {
-        header.channel_counts.push_back(take_part(walk, walk.take_name()));
+        header.channel_counts.push_back(take_part(walk, walk.take_name(), begin, header.hidden));
         return header;
     }
     for (std::string_view name = walk.take_name(); !name.empty(); name = walk.take_name())
-        header.channel_counts.push_back(take_part(walk, name));
+        header.channel_counts.push_back(take_part(walk, name, begin, header.hidden));
     return header;
 }
 

@@ -5,7 +5,8 @@
 /// float or integer values, any compression. Of several layers the first that has red, green and blue is taken, of
 /// files without one the first luminance. Not read: parts of deep data, channels of fewer values than pixels (but
 /// luminance with chroma, which OpenEXR turns into RGB at half precision), and rows so wide and of so many channels
-/// that a block of them takes more than 1 GiB (kMaxExrBlockValues). PFM: 32-bit floats, bottom row first, in colour or
+/// that a block of them takes more than 1 GiB and more than 1 KiB a byte of the file (kMaxExrBlockValues,
+/// kMaxExrExpansion); docs/image-files.md has it all. PFM: 32-bit floats, bottom row first, in colour or
 /// grey; written little endian, read in both byte orders. Carries no attributes. EXR and PFM keep every bit. The bytes
 /// of a file depend on the image and the attributes only.
 ///
@@ -28,6 +29,7 @@ namespace raypool {
 inline constexpr std::int64_t kMaxImageSide = 65536;
 inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 30;
 inline constexpr std::int64_t kMaxExrBlockValues = std::int64_t{1} << 28;
+inline constexpr std::int64_t kMaxExrExpansion = 256;  ///< or so many values in a block for each byte of the file
 inline constexpr std::int64_t kMaxTextureSide = 16384;
 inline constexpr std::int64_t kMaxSceneTexels = std::int64_t{1} << 28;  ///< of all textures of a scene
 

@@ -1,6 +1,9 @@
-/// Portable Float Map: "PF" (or "Pf" for grey), width, height and a scale whose sign tells the byte order, then rows
-/// from the bottom up. Format: Paul Debevec, http://www.pauldebevec.com/Research/HDR/PFM/
+/// Portable Float Map: "PF" (colour) or "Pf" (grey), width, height and a scale whose sign tells the byte order, then
+/// rows from the bottom up. Words of the header may have any white space and comments (# to the end of the line) before
+/// them, as in Netpbm's other formats; after the last comes one white space, or CR LF.
+/// Format: Paul Debevec, http://www.pauldebevec.com/Research/HDR/PFM/
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -15,13 +18,21 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "PFM files are written as they lie in memory");
 
-/// Takes one word and the single white space, or end of a line, after it off the front of `text`.
+constexpr std::string_view kWhiteSpace = " \t\r\n";
+
+/// Takes one word, and what may lie before it, off the front of `text`.
 std::string_view take_word(std::string_view& text) {
     constexpr std::size_t kLongestWord = 32;
-    const std::size_t end = text.substr(0, kLongestWord).find_first_of(" \t\r\n");
+    const auto drop = [&](std::size_t size) { text.remove_prefix(std::min(size, text.size())); };
+    drop(text.find_first_not_of(kWhiteSpace));
+    while (text.starts_with('#')) {
+        drop(text.find_first_of("\r\n"));
+        drop(text.find_first_not_of(kWhiteSpace));
+    }
+    const std::size_t end = text.substr(0, kLongestWord).find_first_of(kWhiteSpace);
     if (end == 0 || end == std::string_view::npos) throw std::runtime_error("not a PFM file: broken header");
     const std::string_view word = text.substr(0, end);
-    text.remove_prefix(end + (text.substr(end, 2) == "\r\n" ? 2 : 1));
+    drop(end);
     return word;
 }
 
@@ -56,30 +67,35 @@ Bytes encode_pfm(const Image& image) {
 
 ImageContents decode_pfm(BytesView bytes) {
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (!text.starts_with("PF") && !text.starts_with("Pf")) {
+        throw std::runtime_error("not a PFM file: must begin with PF or Pf");
+    }
     const std::string_view kind = take_word(text);
-    if (kind != "PF" && kind != "Pf") throw std::runtime_error("not a PFM file: must begin with PF or Pf");
-    const std::size_t channels = kind == "PF" ? 3 : 1;
+    if (kind.size() != 2) throw std::runtime_error("must be PF (colour) or Pf (grey), and no other kind of PFM");
     const auto width = take_number<std::int64_t>(text);
     const auto height = take_number<std::int64_t>(text);
     const auto scale = take_number<double>(text);
     check_image_size(width, height, kMaxImageSide);
     if (!std::isfinite(scale) || scale == 0) throw std::runtime_error("the scale must be finite and not 0");
 
-    const std::size_t row_bytes = static_cast<std::size_t>(width) * channels * sizeof(float);
-    const std::size_t pixel_bytes = row_bytes * static_cast<std::size_t>(height);
+    const std::size_t channels = kind == "PF" ? 3 : 1;
+    const std::size_t row_values = static_cast<std::size_t>(width) * channels;
+    const std::size_t pixel_bytes = row_values * sizeof(float) * static_cast<std::size_t>(height);
+    // Whether a line feed after a carriage return belongs to the pixels, their number tells.
+    text.remove_prefix(text.starts_with("\r\n") && text.size() == pixel_bytes + 2 ? 2 : 1);
     if (text.size() != pixel_bytes) {
         throw std::runtime_error(fmt::format("{} x {} pixels must take {} bytes after the header, got {}", width,
                                              height, pixel_bytes, text.size()));
     }
     Image image(width, height);
-    for (std::int64_t y = height - 1; y >= 0; --y, text.remove_prefix(row_bytes)) {
-        std::memcpy(image.pixel(0, y), text.data(), row_bytes);
-        if (channels == 3) continue;
-        float* const row = image.pixel(0, y);
-        for (std::int64_t x = width - 1; x >= 0; --x) row[3 * x] = row[3 * x + 1] = row[3 * x + 2] = row[x];
-    }
-    if (scale > 0) {
-        for (float& value : image.rgb) value = byte_swapped(value);
+    std::vector<float> row(row_values);
+    for (std::int64_t y = height - 1; y >= 0; --y, text.remove_prefix(row_values * sizeof(float))) {
+        std::memcpy(row.data(), text.data(), row_values * sizeof(float));
+        float* value = image.pixel(0, y);
+        for (std::size_t i = 0; i < row_values * (3 / channels); ++i) {
+            const float stored = row[i * channels / 3];
+            value[i] = scale > 0 ? byte_swapped(stored) : stored;
+        }
     }
     return whole(std::move(image));
 }

@@ -6,6 +6,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <csetjmp>
 #include <cstdio>
@@ -97,6 +98,19 @@ bool read_rows(PngReader& reader, png_bytepp rows) {
     png_read_image(reader.png, rows);
     png_read_end(reader.png, nullptr);
     return true;
+}
+
+/// The chromaticities of a cHRM chunk, where they are not those of sRGB.
+std::string primaries_of(const PngReader& reader) {
+    constexpr std::array<double, 8> kSrgb{0.3127, 0.329, 0.64, 0.33, 0.3, 0.6, 0.15, 0.06};  // white first
+    std::array<double, 8> xy = kSrgb;
+    png_get_cHRM(reader.png, reader.info, xy.data(), &xy[1], &xy[2], &xy[3], &xy[4], &xy[5], &xy[6], &xy[7]);
+    const bool is_srgb = std::equal(xy.begin(), xy.end(), kSrgb.begin(), [](double a, double b) {
+        return std::abs(a - b) < 1e-3;  // files give three digits
+    });
+    if (is_srgb) return "sRGB";
+    return fmt::format("red {:g} {:g}, green {:g} {:g}, blue {:g} {:g}, white {:g} {:g}", xy[2], xy[3], xy[4], xy[5],
+                       xy[6], xy[7], xy[0], xy[1]);
 }
 
 /// Linear light for every code of `bit_depth` bits.
@@ -200,6 +214,8 @@ ImageContents decode_png(BytesView bytes, std::int64_t max_side, std::int64_t ma
         left_out.emplace_back("alpha");
     if (png_get_valid(reader.png, reader.info, PNG_INFO_iCCP) != 0) left_out.emplace_back("a colour profile");
 
+    std::string primaries = primaries_of(reader);
+
     check(convert_to_rgb(reader));
     const int bit_depth = png_get_bit_depth(reader.png, reader.info);
     const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
@@ -218,6 +234,7 @@ ImageContents decode_png(BytesView bytes, std::int64_t max_side, std::int64_t ma
     }
     ImageContents contents = whole(std::move(image));
     contents.left_out = std::move(left_out);
+    contents.primaries = std::move(primaries);
     return contents;
 }
 

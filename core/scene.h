@@ -45,6 +45,9 @@ struct ImageTexels {
 
 struct Texture {
     enum class Kind : std::uint8_t { Solid, Checker3d, CheckerUv, Image };
+    /// What lies beyond an image's edge: the opposite edge, or the edge itself. Around a sphere u meets itself, at its
+    /// poles v ends: Repeat leaves v clamped there. ByShape repeats on planes and around spheres, and clamps on quads.
+    enum class Wrap : std::uint8_t { ByShape, Repeat, Clamp };
     Kind kind = Kind::Solid;
     Vector3d even{0, 0,
                   0};  ///< the colour of Solid; the colour of the checker cells whose indices add up to an even number
@@ -52,6 +55,7 @@ struct Texture {
     double scale = 1;          ///< edge of a checker cell, > 0: in scene units (Checker3d) or in u and v (CheckerUv)
     Vector3d offset{0, 0, 0};  ///< Checker3d: cell boundaries lie where (p + offset) / scale is whole
     std::shared_ptr<const ImageTexels> image;  ///< Image only
+    Wrap wrap = Wrap::ByShape;                 ///< Image only
 };
 
 struct Material {

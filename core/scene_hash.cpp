@@ -44,8 +44,9 @@ class Hasher {
         add_all(width, height, rgb);
     }
     void add(const Texture& texture) {
-        const auto& [kind, even, odd, scale, offset, image] = texture;
+        const auto& [kind, even, odd, scale, offset, image, wrap] = texture;
         add_all(kind, even, odd, scale, offset, image);
+        if (image) add(wrap);
     }
     void add(const Material& material) {
         const auto& [kind, texture_id, fuzz, ior] = material;

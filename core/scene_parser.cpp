@@ -132,6 +132,9 @@ Texture texture(const fs::path& folder, JsonObject object, std::int64_t& texels_
         texture.kind = Kind::Image;
         texture.image = image_below(folder, object.required("file"), texels_left);
         texels_left -= std::int64_t{texture.image->width} * texture.image->height;
+        if (const auto wrap = object.optional("wrap")) {
+            texture.wrap = wrap->one_of({"repeat", "clamp"}) == "repeat" ? Texture::Wrap::Repeat : Texture::Wrap::Clamp;
+        }
     } else {
         texture.kind = type == "checker_3d" ? Kind::Checker3d : Kind::CheckerUv;
         texture.even = object.required("even").vector3(0, kMaxRadiance);

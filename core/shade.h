@@ -68,7 +68,8 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const CompiledScene<ScalarOf<Real>>& sc
     const auto is_kind = [&](Texture::Kind kind) { return is_wanted && row[Row::kTexture] == Real(S(kind)); };
     const Mask<Real> is_checker_3d = needs.checker ? is_kind(Texture::Kind::Checker3d) : Mask<Real>(false);
     const Mask<Real> is_checker_uv = needs.uv ? is_kind(Texture::Kind::CheckerUv) : Mask<Real>(false);
-    const Mask<Real> is_image = needs.uv ? is_kind(Texture::Kind::Image) : Mask<Real>(false);
+    const Mask<Real> is_image =
+        needs.uv ? is_wanted && row[Row::kTexture] >= Real(S(Texture::Kind::Image)) : Mask<Real>(false);
 
     std::array<Real, 2> uv{Real(0), Real(0)};
     if constexpr (needs.uv) {
@@ -117,7 +118,9 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const CompiledScene<ScalarOf<Real>>& sc
         for (unsigned bits = mask_bits(is_image); bits != 0; bits &= bits - 1) {
             const int i = std::countr_zero(bits);
             const auto& image = scene.images[static_cast<std::size_t>(lane(row[Row::kTextureRow], i))];
-            const Vec3<S> texel = image_colour<S>(image, lane(uv[0], i), lane(uv[1], i));
+            const auto repeat = static_cast<int>(lane(row[Row::kTexture], i)) - static_cast<int>(Texture::Kind::Image);
+            const Vec3<S> texel =
+                image_colour<S>(image, lane(uv[0], i), lane(uv[1], i), ImageRepeat::of_number(repeat));
             for (int k = 0; k < 3; ++k) {
                 if constexpr (Simd<Real>) {
                     colour[k][i] = texel[k];

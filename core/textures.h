@@ -1,9 +1,7 @@
 /// Colours that vary over a surface: checkers in space, checkers in surface coordinates, and images.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <utility>
 
 #include "core/sampling.h"
 
@@ -65,26 +63,43 @@ struct ImageView {
     std::int32_t height = 0;
 };
 
-/// Bilinear lookup, v upward, edges clamped. One lane at a time: images are rare, and their memory is the cost.
+/// Whether an image begins anew beyond its edges along u, and along v; where not, its edge goes on.
+struct ImageRepeat {
+    bool u = false;
+    bool v = false;
+
+    [[nodiscard]] constexpr int number() const { return int{u} + 2 * int{v}; }
+    static constexpr ImageRepeat of_number(int number) { return {(number & 1) != 0, (number & 2) != 0}; }
+};
+
+/// Bilinear lookup, v upward. One lane at a time: images are rare, and their memory is the cost.
 template <class Scalar>
-Vec3<Scalar> image_colour(const ImageView<Scalar>& image, Scalar u, Scalar v) {
-    const auto place = [](Scalar at, std::int32_t size) {
-        const Scalar x = max(min(at * Scalar(size) - Scalar(0.5F), Scalar(size - 1)), Scalar(0));
-        const auto first = static_cast<std::int32_t>(x);
-        return std::pair{first, x - Scalar(first)};
+Vec3<Scalar> image_colour(const ImageView<Scalar>& image, Scalar u, Scalar v, ImageRepeat repeat) {
+    struct Place {
+        std::int32_t first, second;  // texels, ...
+        Scalar weight;               // ... of the second
     };
-    const auto [column, s] = place(u, image.width);
-    const auto [row, t] = place(Scalar(1) - v, image.height);
+    const auto place = [](Scalar at, std::int32_t size, bool repeats) -> Place {
+        const Scalar half(0.5F);
+        const Scalar wanted = (repeats ? at - floor(at) : at) * Scalar(size) - half;
+        const Scalar x = repeats ? max(min(wanted, Scalar(size) - half), -half)  // NaN, of an infinite place, as well
+                                 : max(min(wanted, Scalar(size - 1)), Scalar(0));
+        const Scalar below = floor(x);
+        const auto first = static_cast<std::int32_t>(below);
+        const std::int32_t beyond = repeats ? 0 : size - 1;
+        return {first < 0 ? size - 1 : first, first + 1 < size ? first + 1 : beyond, x - below};
+    };
+    const Place column = place(u, image.width, repeat.u);
+    const Place row = place(Scalar(1) - v, image.height, repeat.v);
     const auto texel = [&](std::int32_t c, std::int32_t r) {
-        const Scalar* p = image.texels + 4 * (std::int64_t{std::min(r, image.height - 1)} * image.width +
-                                              std::min(c, image.width - 1));
+        const Scalar* p = image.texels + 4 * (std::int64_t{r} * image.width + c);
         return vec3<Scalar>(p[0], p[1], p[2]);
     };
     const auto mix = [](const Vec3<Scalar>& a, const Vec3<Scalar>& b, Scalar w) {
         return vec3<Scalar>(mad(w, b[0] - a[0], a[0]), mad(w, b[1] - a[1], a[1]), mad(w, b[2] - a[2], a[2]));
     };
-    return mix(mix(texel(column, row), texel(column + 1, row), s),
-               mix(texel(column, row + 1), texel(column + 1, row + 1), s), t);
+    return mix(mix(texel(column.first, row.first), texel(column.second, row.first), column.weight),
+               mix(texel(column.first, row.second), texel(column.second, row.second), column.weight), row.weight);
 }
 
 }  // namespace raypool

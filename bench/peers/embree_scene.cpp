@@ -92,7 +92,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) : textures_(scene.textures) {
     planes_.first_id = quads_.first_id + static_cast<std::uint32_t>(scene.quads.size());
     for (const Plane& plane : scene.planes) {
         planes_.shapes.push_back(flat_shape(plane));
-        add_surface(scene, plane.material_id, planes_.shapes.back().normal, 0, {});
+        add_surface(scene, plane.material_id, planes_.shapes.back().normal, 0, {}, true);
     }
     surfaces_.resize(surfaces_.size() + Surface::kColumns);  // lanes that hit nothing look at row 0
 
@@ -106,7 +106,8 @@ EmbreeScene::EmbreeScene(const Scene& scene) : textures_(scene.textures) {
     if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree refused the scene");
 }
 
-void EmbreeScene::add_surface(const Scene& scene, int material_id, V3<float> shape, float radius, V3<float> motion) {
+void EmbreeScene::add_surface(const Scene& scene, int material_id, V3<float> shape, float radius, V3<float> motion,
+                              bool is_plane) {
     const Material& material = scene.materials[static_cast<std::size_t>(material_id)];
     float row[Surface::kColumns]{};
     const auto put = [&](int column, const Vector3d& v) {
@@ -128,6 +129,11 @@ void EmbreeScene::add_surface(const Scene& scene, int material_id, V3<float> sha
         put(Surface::kOffset, texture.offset);
         row[Surface::kDensity] = static_cast<float>(1 / texture.scale);
         row[Surface::kImage] = static_cast<float>(material.texture_id);
+        const bool is_sphere = radius > 0;
+        const bool repeats = texture.wrap == Texture::Wrap::Repeat ||
+                             (texture.wrap == Texture::Wrap::ByShape && (is_sphere || is_plane));
+        row[Surface::kRepeatU] = repeats ? 1.0F : 0.0F;
+        row[Surface::kRepeatV] = repeats && !is_sphere ? 1.0F : 0.0F;
     }
     surfaces_.insert(surfaces_.end(), std::begin(row), std::end(row));
 }

@@ -56,6 +56,8 @@ struct Surface {
         kOffset = 16,     ///< the checker's
         kDensity = 19,    ///< cells a unit
         kImage = 20,      ///< index into the scene's textures
+        kRepeatU = 21,    ///< whether the image begins anew beyond its edges
+        kRepeatV = 22,
         kColumns = 24
     };
 };
@@ -76,7 +78,8 @@ class EmbreeScene {
     [[nodiscard]] const Texture& texture(int id) const { return textures_[static_cast<std::size_t>(id)]; }
 
   private:
-    void add_surface(const Scene& scene, int material_id, V3<float> shape, float radius, V3<float> motion);
+    void add_surface(const Scene& scene, int material_id, V3<float> shape, float radius, V3<float> motion,
+                     bool is_plane = false);
     template <class Shape>
     void attach(ShapeTable<Shape>& table, RTCIntersectFunctionN intersect);
 

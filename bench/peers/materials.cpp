@@ -7,18 +7,24 @@ namespace raypool::peers {
 
 namespace {
 
-/// Bilinear between texel centres; outside of the outermost centres their colour.
-V3<float> image_colour(const ImageTexels& image, float u, float v) {
+/// Bilinear between texel centres; beyond an edge of the image lies the edge itself or, where it repeats, the opposite.
+V3<float> image_colour(const ImageTexels& image, float u, float v, bool repeats_u, bool repeats_v) {
+    const auto index = [](int at, int size, bool repeats) {
+        return repeats ? (at + 2 * size) % size : std::clamp(at, 0, size - 1);
+    };
     const auto texel = [&](int x, int y) {
-        x = std::clamp(x, 0, image.width - 1);
-        y = std::clamp(y, 0, image.height - 1);
+        x = index(x, image.width, repeats_u);
+        y = index(y, image.height, repeats_v);
         const float* p = &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                                          static_cast<std::size_t>(x))];
         return V3<float>{p[0], p[1], p[2]};
     };
-    // Coordinates on a plane are unbounded; beyond the edge nothing changes.
-    const float x = std::clamp(u, -1.0F, 2.0F) * static_cast<float>(image.width) - 0.5F;
-    const float y = std::clamp(1 - v, -1.0F, 2.0F) * static_cast<float>(image.height) - 0.5F;
+    // Coordinates on a plane are unbounded.
+    const auto bounded = [](float at, bool repeats) {
+        return repeats ? at - std::floor(at) : std::clamp(at, -1.0F, 2.0F);
+    };
+    const float x = bounded(u, repeats_u) * static_cast<float>(image.width) - 0.5F;
+    const float y = bounded(1 - v, repeats_v) * static_cast<float>(image.height) - 0.5F;
     const float left = std::floor(x);
     const float top = std::floor(y);
     const int i = static_cast<int>(left);
@@ -43,7 +49,8 @@ V3<float> mapped_colour(const EmbreeScene& scene, int id, V3<float> outward, flo
         const bool is_odd = is_odd_cell<float>({u, v, 0}, row.value(Surface::kDensity));
         return row.vector(is_odd ? Surface::kOdd : Surface::kColour);
     }
-    return image_colour(*scene.texture(static_cast<int>(row.value(Surface::kImage))).image, u, v);
+    return image_colour(*scene.texture(static_cast<int>(row.value(Surface::kImage))).image, u, v,
+                        row.value(Surface::kRepeatU) != 0, row.value(Surface::kRepeatV) != 0);
 }
 
 }  // namespace raypool::peers

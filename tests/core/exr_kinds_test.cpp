@@ -11,10 +11,12 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTileDescription.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <string>
 #include <vector>
 
@@ -183,6 +185,52 @@ TEST(ExrKinds, AttributesOfUnknownTypesArePassedOver) {
     header.insert("somebodys", Imf::OpaqueAttribute("a_type_of_theirs"));
     write_lines(folder / "a.exr", header, channels);
     EXPECT_TRUE(holds(read_image(folder / "a.exr"), 0, 1, 2));
+}
+
+TEST(ExrKinds, ManyChannelsOfAWideImageAreReadInTallBlocks) {
+    const ScratchFolder folder;
+    constexpr int kWide = 7680;
+    Imf::Header header(kWide, 1);
+    header.compression() = Imf::DWAB_COMPRESSION;  // 256 rows together, of more than 1 GiB
+    const Image noise = wild_image(kWide, 47);
+    const auto values_of = [&](int channel) { return noise.rgb.data() + channel * kWide; };
+    Imf::FrameBuffer buffer;
+    for (int i = 0; i < 140; ++i) {
+        const std::string name = i < 3 ? std::string(1, "RGB"[i]) : "light" + std::to_string(i);
+        header.channels().insert(name, Imf::Channel(Imf::UINT));  // kept to the bit, and so not compressed away
+        buffer.insert(name, Imf::Slice::Make(Imf::UINT, values_of(i), header.dataWindow(), sizeof(float)));
+    }
+    {
+        Imf::OutputFile file((folder / "a.exr").c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(1);
+    }
+    const Image image = read_image(folder / "a.exr");
+    ASSERT_EQ(image.rgb.size(), 3U * kWide);
+    for (int i = 0; i < 3 * kWide; ++i)
+        ASSERT_EQ(image.rgb[static_cast<std::size_t>(i)],
+                  static_cast<float>(std::bit_cast<std::uint32_t>(values_of(i % 3)[i / 3])));
+}
+
+TEST(ExrKinds, AttributesThatVersionsOfOpenExrReadInDifferentWaysArePassedOver) {
+    const ScratchFolder folder;
+    const Channels channels{"R", "G", "B"};
+    Imf::Header header = header_of(channels);
+    header.insert("attribute_of_theirs", Imf::StringAttribute("anything at all"));
+    header.insert("own", Imf::StringAttribute("text"));
+    write_lines(folder / "a.exr", header, channels);
+    const std::string written = file_text(folder / "a.exr");
+    const std::string old = "attribute_of_theirs" + std::string("\0string", 7);
+    for (const std::string type : {"studio", "bytes", "idmanifest"}) {
+        std::string bytes = written;
+        const std::size_t place = bytes.find(old);
+        ASSERT_NE(place, std::string::npos);
+        bytes.replace(place, old.size(), std::string(old.size() - 1 - type.size(), 'a') + '\0' + type);
+        set_file_text(folder / "a.exr", bytes);
+        const ImageContents contents = read_image_contents(folder / "a.exr");
+        EXPECT_TRUE(holds(contents.image, 0, 1, 2)) << type;
+        EXPECT_EQ(contents.attributes, (ImageAttributes{{"own", "text"}})) << type;
+    }
 }
 
 TEST(ExrKinds, WindowsAndPrimariesAreTold) {

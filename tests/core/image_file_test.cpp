@@ -6,8 +6,10 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <gtest/gtest.h>
 #include <png.h>
+#include <zlib.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -187,6 +189,27 @@ TEST(ImageFile, ReadsPfmInBothByteOrders) {
     EXPECT_EQ(read_image(folder / "big.pfm").rgb, (std::vector<float>{1, 2, -2}));
 }
 
+TEST(ImageFile, ReadsGreyPfmAndEveryHeaderThatReadersAgreeOn) {
+    const ScratchFolder folder;
+    const std::string colour("\0\0\x80\x3f\0\0\0\x40\0\0\0\xc0", 12);
+    const std::string grey("\x0a\0\x80\x3f\0\0\0\x40", 8);  // begins like a line feed
+    const auto read = [&](const std::string& bytes) {
+        set_file_text(folder / "a.pfm", bytes);
+        return read_image(folder / "a.pfm").rgb;
+    };
+    const float first = std::bit_cast<float>(0x3f80000aU);
+    const std::vector<float> colours{1, 2, -2}, greys{first, first, first, 2, 2, 2};
+    for (const char* header : {"PF\n1 1\n-1\n", "PF\r\n1 1\r\n-1.0\r\n", "PF 1  1\t-1 ", "PF\n\n1\n1\n\n-1\n",
+                               "PF\n# made by hand\n1 1 # one\n#\n-1\n", "PF\n1 1\n-1\r"}) {
+        EXPECT_EQ(read(header + colour), colours) << header;
+    }
+    for (const char* header : {"Pf\n2 1\n-1\n", "Pf\r\n2 1\r\n-1\r\n", "Pf 2 1 -1\r"}) {
+        EXPECT_EQ(read(header + grey), greys) << header;
+    }
+    // Two grey rows, the bottom one first, in the other byte order.
+    EXPECT_EQ(read(std::string("Pf\n1 2\n1\n\x3f\x80\0\0\x40\0\0\0", 17)), (std::vector<float>{2, 2, 2, 1, 1, 1}));
+}
+
 TEST(ImageFile, ReadsHalfFloatsAndExtraChannelsAndShiftedWindowsOfExr) {
     const ScratchFolder folder;
     const fs::path path = folder / "a.exr";
@@ -212,6 +235,26 @@ TEST(ImageFile, ReadsHalfFloatsAndExtraChannelsAndShiftedWindowsOfExr) {
         }
         EXPECT_EQ(read_image(path).rgb, (std::vector<float>{2, 3, 4, 5, 6, 7}));
     }
+}
+
+TEST(ImageContents, TellThePrimariesOfAPngThatAreNotThoseOfSrgb) {
+    const ScratchFolder folder;
+    const auto read = [&](const std::array<std::uint32_t, 8>& hundred_thousandths) {  // white first
+        std::string chunk = "cHRM";
+        for (const std::uint32_t value : hundred_thousandths)
+            for (int shift = 24; shift >= 0; shift -= 8) chunk += static_cast<char>(value >> shift);
+        const auto sum = static_cast<std::uint32_t>(
+            crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), static_cast<uInt>(chunk.size())));
+        for (int shift = 24; shift >= 0; shift -= 8) chunk += static_cast<char>(sum >> shift);
+        constexpr std::size_t kEndOfHeader = 33;
+        std::string bytes = png_of(1, 1, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, 0, {{255, 128, 0}});
+        bytes.insert(kEndOfHeader, std::string("\0\0\0\x20", 4) + chunk);
+        set_file_text(folder / "a.png", bytes);
+        return read_image_contents(folder / "a.png").primaries;
+    };
+    EXPECT_EQ(read({31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000}), "sRGB");
+    EXPECT_EQ(read({31270, 32900, 70800, 29200, 17000, 79700, 13100, 4600}),
+              "red 0.708 0.292, green 0.17 0.797, blue 0.131 0.046, white 0.3127 0.329");
 }
 
 TEST(Texture, IsThePngInLinearLight) {

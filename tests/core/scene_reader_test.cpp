@@ -1,5 +1,6 @@
 /// The scene file: what it may say, and the exact words with which the rest is refused.
 #include "core/scene_reader.h"
+#include "core/scene_hash.h"
 
 #include <unistd.h>
 
@@ -148,6 +149,21 @@ TEST(SceneReader, EveryKeyArrivesInTheScene) {
     ASSERT_NE(map, scene.textures.end());
     EXPECT_EQ(map->image->width, 64);
     EXPECT_EQ(map->image->height, 32);
+}
+
+TEST(SceneReader, TellsHowAnImageWrapsAndItsHashCoversIt) {
+    const auto read = [](const std::string& wrap) {
+        const std::string texture =
+            R"("textures": {"t": {"type": "image", "file": "map.png")" + wrap + R"(}}, "shapes")";
+        return parse_scene(with(kSmallest, "\"shapes\"", texture), "a.json", kScenes / "textures");
+    };
+    const Scene by_shape = read(""), repeat = read(R"(, "wrap": "repeat")"), clamp = read(R"(, "wrap": "clamp")");
+    EXPECT_EQ(by_shape.textures[0].wrap, Texture::Wrap::ByShape);
+    EXPECT_EQ(repeat.textures[0].wrap, Texture::Wrap::Repeat);
+    EXPECT_EQ(clamp.textures[0].wrap, Texture::Wrap::Clamp);
+    EXPECT_NE(scene_hash(by_shape), scene_hash(repeat));
+    EXPECT_NE(scene_hash(by_shape), scene_hash(clamp));
+    EXPECT_NE(scene_hash(repeat), scene_hash(clamp));
 }
 
 TEST(SceneReader, RefusesEachBrokenRuleNamingItsPlaceAndTheValue) {
