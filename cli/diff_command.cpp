@@ -143,6 +143,7 @@ std::vector<std::string> not_compared(const ImageContents& a, const ImageContent
 int diff(const DiffOptions& options) {
     std::vector<Tolerance> tolerances;
     for (const std::string& text : options.tolerances) tolerances.push_back(parse_tolerance(text));
+    check_distinct({{"--output", options.output}}, {{"A", options.a}, {"B", options.b}});
     if (!options.output.empty()) {
         image_format(options.output);
         check_writable(options.output);

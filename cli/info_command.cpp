@@ -8,6 +8,7 @@
 #include "cli/print.h"
 #include "core/compiled_scene.h"
 #include "core/environment.h"
+#include "core/light_range.h"
 #include "core/scene_reader.h"
 
 namespace raypool::cli {
@@ -54,6 +55,10 @@ void info(const std::string& name) {
           filled_lanes(compiled.planes));
     print_tree("sphere", compiled.sphere_tree);
     print_tree("quad", compiled.quad_tree);
+    const FixedPoint fixed = FixedPoint::make(1, compiled.max_radiance);
+    print("light: radiance {:.3g} to {:.3g}; sums of up to {} samples go by steps of {:.2g}{}\n", dimmest_light(scene),
+          compiled.max_radiance, FixedPoint::kExtensibleSamples, 1 / fixed.scale(),
+          rounding_of(dimmest_light(scene), fixed) > kFineStep ? ", coarse for the dimmest" : "");
     print("tables: {:.1f} KB\n", static_cast<double>(compiled.bytes()) / 1024);
 }
 

@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/option_rules.h"
 #include "cli/print.h"
+#include "cluster/agreement.h"
 #include "cluster/ranks.h"
 #include "core/error.h"
 #include "core/memory.h"
@@ -21,7 +22,9 @@
 namespace {
 
 int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
-    const auto fail = [&](int status, const std::string& text) { return ranks.fail(status, raypool::printable(text)); };
+    const auto fail = [&](int status, const std::string& text) {
+        return raypool::cluster::fail(ranks, status, raypool::printable(text));
+    };
     try {
         if (ranks.count() > 1 && (argc < 2 || std::strcmp(argv[1], "render") != 0))
             return fail(2, "several ranks can only run the command render");
@@ -44,7 +47,8 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
             if (app.get_subcommands().empty()) return fail(2, "a command is required (see --help)");
         } catch (const CLI::ParseError& error) {
             if (error.get_exit_code() != 0) return fail(2, fmt::format("{} (see --help)", error.what()));
-            app.exit(error);  // --help, --version
+            raypool::cluster::agree(ranks, {{"command", "help"}});
+            if (ranks.is_first()) app.exit(error);  // --help, --version
         }
         if (std::fflush(stdout) != 0) return fail(1, "cannot write to the standard output");
         return status;

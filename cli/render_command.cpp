@@ -18,7 +18,9 @@
 #include "cli/render_summary.h"
 #include "cli/stats_json.h"
 #include "cli/stopwatch.h"
+#include "cluster/agreement.h"
 #include "core/cost_image.h"
+#include "core/environment.h"
 #include "core/error.h"
 #include "core/heat_map.h"
 #include "core/image_file.h"
@@ -126,7 +128,7 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
 
 /// What only one rank can do is for rank 0; what is not gathered from ranks is refused. Returns the checkpoint's lock.
 [[nodiscard]] std::unique_ptr<FileLock> make_ready(RenderOptions& options, const cluster::Ranks& ranks) {
-    if (ranks.separate_count() > 1 && options.samples.empty())
+    if (ranks.separate_count() > 1 && !options.samples)
         throw InputError(fmt::format(
             "{} tasks were started that know nothing of each other, and each would render the whole image: use mpirun "
             "or "
@@ -142,8 +144,34 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
     return nullptr;
 }
 
+/// What ranks must have in common: the program, the image with its samples, what they tell each other and when, what
+/// reports add up, and files, which would be lost if only another rank than the first were asked for them. `options`
+/// are as the rank was given them.
+ImageKey shared_terms(const Scene& scene, const RenderRecord& record, const RenderOptions& options) {
+    const nlohmann::json program = environment_json();
+    const bool is_exact = record.engine != "wavefront" || !adds_reals(record.pool.accumulator);
+    const auto is_named = [](const std::string& file) { return file.empty() ? "none" : "a file"; };
+    const auto is_on = [](bool flag) { return flag ? "on" : "off"; };
+    ImageKey terms{{"command", "render"},
+                   {"version", program["version"].get<std::string>()},
+                   {"commit", program["commit"].get<std::string>()}};
+    for (auto& term : image_key(scene, record)) terms.push_back(std::move(term));
+    const RenderSettings& settings = record.settings;
+    const ImageKey protocol{{"spp", fmt::to_string(record.spp)},
+                            {"samples", fmt::format("{}:{}", settings.first_sample, settings.end_sample)},
+                            {"checkpoint", is_named(options.checkpoint.file)},
+                            {"resume", is_on(options.checkpoint.is_resumed)},
+                            {"output", is_named(options.output)},
+                            {"stats", is_named(options.stats)},
+                            {"count_work", is_on(options.count_work)},
+                            {"accumulator", is_exact ? "exact" : options.pool.accumulator}};
+    terms.insert(terms.end(), protocol.begin(), protocol.end());
+    return terms;
+}
+
 int render(RenderOptions& options, cluster::Ranks& ranks) {
     const Stopwatch total;
+    const RenderOptions given = options;
     check_distinct({{"--output", options.output},
                     {"--checkpoint", options.checkpoint.file},
                     {"--stats", options.stats},
@@ -188,6 +216,8 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     record.height = scene.height;
     record.read_s = watch.seconds();
 
+    if (ranks.count() > 1) cluster::agree(ranks, shared_terms(scene, record, given));
+
     Checkpoint checkpoint(options.checkpoint, ranks);
     const Image image = render_image(scene, options.checkpoint, options.is_quiet, checkpoint, ranks, record);
     watch.lap();
@@ -212,8 +242,8 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
         print(stderr,
               "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
               options.checkpoint.file, record.samples_done);
-    const bool is_missed = signal == 0 && misses_target(record);
-    if (is_missed && ranks.is_first()) print_miss(record);
+    const bool is_missed = ranks.is_first() && signal == 0 && misses_target(record);
+    if (is_missed) print_miss(record);
     const int status = signal != 0 ? 128 + signal : is_missed ? 1 : 0;
     if (options.is_quiet) return status;
     print_summary(record);

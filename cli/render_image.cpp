@@ -11,6 +11,7 @@
 #include "cli/stopwatch.h"
 #include "cluster/exchange.h"
 #include "cluster/rank_engine.h"
+#include "core/light_range.h"
 #include "core/progressive.h"
 #include "core/scene_hash.h"
 #include "recursive/engine.h"
@@ -29,21 +30,6 @@ std::unique_ptr<Engine> make_own_engine(const std::string& name, const wavefront
 std::unique_ptr<Engine> make_engine(const RenderRecord& record, cluster::Ranks& ranks) {
     std::unique_ptr<Engine> own = make_own_engine(record.engine, record.pool);
     return ranks.count() == 1 ? std::move(own) : std::make_unique<cluster::RankEngine>(std::move(own), ranks);
-}
-
-/// All that fixes the samples. Threads, engine and pool do not, nor does how many there are.
-ImageKey image_key(const Scene& scene, const RenderRecord& record) {
-    const RenderSettings& settings = record.settings;
-    return {{"scene", scene_hash(scene)},
-            {"width", fmt::to_string(scene.width)},
-            {"height", fmt::to_string(scene.height)},
-            {"depth", fmt::to_string(settings.depth)},
-            {"split_depth", fmt::to_string(settings.split_depth)},
-            {"seed", fmt::to_string(settings.seed)},
-            {"sampler", settings.sampler == Sampler::Sobol ? "sobol" : "independent"},
-            {"roulette", settings.roulette ? "on" : "off"},
-            {"precision", record.precision == Precision::Float ? "float" : "double"},
-            {"target_error", fmt::to_string(record.target_error)}};
 }
 
 /// Renders what `sums` lacks, and keeps checkpoints.
@@ -132,12 +118,32 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
     checkpoint.finish(sums);
     record.settings.progress = nullptr;
     record.hash = sums.framebuffer.hash();
+    record.sum_step = 1 / sums.framebuffer.fixed_point().scale();
+    record.dimmest_light = dimmest_light(scene);
     record.samples_done = is_adaptive ? std::llround(record.adaptive.mean_samples()) : sums.sample_count();
-    return is_adaptive ? sums.framebuffer.image(record.adaptive.sample_counts)
-                       : sums.framebuffer.image(record.samples_done);
+    Image image = is_adaptive ? sums.framebuffer.image(record.adaptive.sample_counts)
+                              : sums.framebuffer.image(record.samples_done);
+    record.mean_radiance =
+        std::accumulate(image.rgb.begin(), image.rgb.end(), 0.0) / static_cast<double>(image.rgb.size());
+    return image;
 }
 
 }  // namespace
+
+ImageKey image_key(const Scene& scene, const RenderRecord& record) {
+    const RenderSettings& settings = record.settings;
+    return {{"image_version", fmt::to_string(kImageVersion)},
+            {"width", fmt::to_string(scene.width)},
+            {"height", fmt::to_string(scene.height)},
+            {"scene", scene_hash(scene)},
+            {"depth", fmt::to_string(settings.depth)},
+            {"split_depth", fmt::to_string(settings.split_depth)},
+            {"seed", fmt::to_string(settings.seed)},
+            {"sampler", settings.sampler == Sampler::Sobol ? "sobol" : "independent"},
+            {"roulette", settings.roulette ? "on" : "off"},
+            {"precision", record.precision == Precision::Float ? "float" : "double"},
+            {"target_error", fmt::to_string(record.target_error)}};
+}
 
 Image render_image(const Scene& scene, const CheckpointOptions& options, bool is_quiet, Checkpoint& checkpoint,
                    cluster::Ranks& ranks, RenderRecord& record) {

@@ -9,6 +9,10 @@
 
 namespace raypool::cli {
 
+/// All that fixes the image, of what `record` has before a render. Threads, engine and pool do not. Checkpoints, parts
+/// and ranks must have it in common.
+ImageKey image_key(const Scene& scene, const RenderRecord& record);
+
 /// Renders what the checkpoint of `options`, if one is resumed, lacks. Reads the settings in `record`, and fills in
 /// what was made. Where the checkpoint was asked to stop, the image is of the samples so far. Of several ranks, all
 /// call it, and rank 0 gets the image; what others get means nothing.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/print.h"
+#include "core/light_range.h"
 #include "core/trace.h"
 
 namespace raypool::cli {
@@ -40,6 +41,19 @@ void print_error(const RenderRecord& record) {
           adaptive.unseen_rmse);
 }
 
+/// Whether rounding shows: against the image as a whole, and the dimmest light in the scene.
+void print_step(const RenderRecord& record) {
+    const double half = 0.5 * record.sum_step;
+    print("sums go by steps of {:.2g}; mean radiance {:.4g}\n", record.sum_step, record.mean_radiance);
+    const auto warn = [&](const char* what, double radiance) {
+        if (radiance > 0 && half > kFineStep * radiance)
+            print("beside the brightest light {}, {:.3g}, is coarse: rounding changes it by up to {:.2g} %\n", what,
+                  radiance, 100 * half / radiance);
+    };
+    warn("the image's mean", record.mean_radiance);
+    warn("the dimmest light", record.dimmest_light);
+}
+
 }  // namespace
 
 void print_summary(const RenderRecord& record) {
@@ -61,6 +75,7 @@ void print_summary(const RenderRecord& record) {
               static_cast<double>(report.pool_bytes) / (1024 * 1024));
     if (record.truncation_bound > 0)
         print("depth {} cuts off a radiance of at most {:.3g} a pixel\n", settings.depth, record.truncation_bound);
+    print_step(record);
     if (report.audit.non_finite > 0 || report.audit.clamped > 0)
         print("bad samples: {} not finite and left out, {} channels cut (radiance {:.6g} in all)\n",
               report.audit.non_finite, report.audit.clamped, report.audit.clamped_energy);

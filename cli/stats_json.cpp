@@ -71,28 +71,31 @@ json stats_json(const RenderRecord& record) {
         for (std::size_t i = 0; i < kStageCount; ++i) round["stage_s"][kStageNames[i]] = work.stage_s[i];
         rounds.push_back(round);
     }
-    json stats{{"hash", record.hash},
-               {"seconds",
-                {{"read", record.read_s},
-                 {"compile", record.compile_s},
-                 {"render", report.seconds},
-                 {"setup", report.setup_s},  // of render
-                 {"write", record.write_s},
-                 {"total", record.total_s}}},
-               {"paths", report.paths()},
-               {"segments", report.segments()},
-               {"samples_done", record.samples_done},
-               {"segments_per_path", ratio(segments, paths)},
-               {"mpaths_per_s", ratio(paths * 1e-6, report.seconds)},
-               {"audit",
-                {{"non_finite", report.audit.non_finite},
-                 {"clamped", report.audit.clamped},
-                 {"clamped_energy", report.audit.clamped_energy}}},
-               {"truncation_bound", record.truncation_bound},
-               {"needs", feature_names(record.needs)},
-               {"settings", settings_json(record)},
-               {"environment", environment_json()},
-               {"threads", threads}};
+    json stats{
+        {"hash", record.hash},
+        {"seconds",
+         {{"read", record.read_s},
+          {"compile", record.compile_s},
+          {"render", report.seconds},
+          {"setup", report.setup_s},  // of render
+          {"write", record.write_s},
+          {"total", record.total_s}}},
+        {"paths", report.paths()},
+        {"segments", report.segments()},
+        {"samples_done", record.samples_done},
+        {"segments_per_path", ratio(segments, paths)},
+        {"mpaths_per_s", ratio(paths * 1e-6, report.seconds)},
+        {"audit",
+         {{"non_finite", report.audit.non_finite},
+          {"clamped", report.audit.clamped},
+          {"clamped_energy", report.audit.clamped_energy}}},
+        {"sums",
+         {{"step", record.sum_step}, {"mean_radiance", record.mean_radiance}, {"dimmest_light", record.dimmest_light}}},
+        {"truncation_bound", record.truncation_bound},
+        {"needs", feature_names(record.needs)},
+        {"settings", settings_json(record)},
+        {"environment", environment_json()},
+        {"threads", threads}};
     if (record.target_error > 0) {
         const auto [least, most] =
             std::minmax_element(record.adaptive.sample_counts.begin(), record.adaptive.sample_counts.end());

@@ -27,6 +27,9 @@ struct RenderRecord {
     std::vector<RenderReport> ranks;  ///< of each, where there are several
     double target_error = 0;          ///< 0: every pixel has the same number of samples
     AdaptiveReport adaptive;
+    double sum_step = 0;          ///< of the framebuffer's sums, in radiance
+    double mean_radiance = 0;     ///< of the image
+    double dimmest_light = 0;     ///< of the scene
     double truncation_bound = 0;  ///< CompiledScene::truncation_bound() at the depth of the settings
     std::string hash;
     std::int64_t samples_done = 0;  ///< for each pixel, those of a resumed checkpoint too; on average where adaptive

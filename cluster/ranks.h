@@ -4,8 +4,8 @@
 /// are in ranks_mpi.cpp, the only file that knows MPI. It is built where CMake finds MPI, as a module that is loaded
 /// where a launcher has started the command: without one, the command starts as fast as if there were no MPI.
 ///
-/// All ranks must call what is collective, in the same order. What one of them throws does not reach the others: main
-/// ends the job for all of them (fail()).
+/// All ranks must call what is collective, in the same order. The first such call is agree() (agreement.h).
+/// What one of them throws does not reach the others: main ends the job for all of them (fail()).
 #pragma once
 
 #include <cstddef>
@@ -36,6 +36,9 @@ class Ranks {
     /// How many processes were started alike, this one among them, that know nothing of each other: srun without MPI.
     [[nodiscard]] int separate_count() const { return separate_count_; }
     void set_separate_count(int count) { separate_count_ = count; }
+    /// All ranks have said that they are about to do the same (agreement.h).
+    [[nodiscard]] bool has_agreed() const { return has_agreed_; }
+    void set_agreed() { has_agreed_ = true; }
 
     /// Says what went wrong and, where there are other ranks, ends all of them. Returns the status. Not collective.
     virtual int fail(int status, const std::string& text) const {
@@ -69,6 +72,9 @@ class Ranks {
     int count_ = 1;
     int on_this_machine_ = 1;
     int separate_count_ = 1;
+
+  private:
+    bool has_agreed_ = false;
 };
 
 /// Joins the ranks of a launcher; one rank where none has started this process. Throws InputError where several were

@@ -35,7 +35,7 @@ template <SceneNeeds needs, class Real>
 RAYPOOL_INLINE Ray<Real> camera_ray(const Camera<ScalarOf<Real>>& camera, const Real& x, const Real& y,
                                     const Uint32<Real>& pixel, const Uint32<Real>& sample, const RandomSeed& seed) {
     using U = Uint32<Real>;
-    const std::array<Real, 4> film = random_block<Real>(pixel, sample, U(random_block_id::kFilm), seed);
+    const std::array<Real, 4> film = random_block<Real>({pixel, sample}, U(0U), RandomPurpose::Film, seed);
 
     Ray<Real> ray;
     const Real column = x - Real(camera.half_width);
@@ -60,7 +60,7 @@ RAYPOOL_INLINE Ray<Real> camera_ray(const Camera<ScalarOf<Real>>& camera, const 
 
     ray.time = Real(0);
     if constexpr (needs.motion) {
-        const std::array<Real, 4> shutter = random_block<Real>(pixel, sample, U(random_block_id::kShutter), seed);
+        const std::array<Real, 4> shutter = random_block<Real>({pixel, sample}, U(0U), RandomPurpose::Shutter, seed);
         ray.time = mad<Real>(shutter[0], Real(camera.shutter_length), Real(camera.shutter_open));
     }
     return ray;

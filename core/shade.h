@@ -187,8 +187,7 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
     const auto is_material = [&](Material::Kind kind) { return row[Row::kMaterial] == Real(S(kind)); };
 
     const SurfacePoint<Real> point = surface_point<needs, Real>(ray, t, row);
-    const std::array<Real, 4> random =
-        random_block<Real>(key.pixel, key.sample, step + Uint32<Real>(random_block_id::kBounce), seed);
+    const std::array<Real, 4> random = random_block<Real>(key, step, RandomPurpose::Scatter, seed);
 
     Scattered<Real> out;
     out.origin = point.position;

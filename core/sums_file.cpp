@@ -154,12 +154,13 @@ double most_samples(const FixedPoint& fixed) {
 }  // namespace
 
 std::string difference(const ImageKey& found, const ImageKey& wanted) {
-    for (std::size_t i = 0; i < std::min(found.size(), wanted.size()); ++i) {
-        if (found[i].first != wanted[i].first) return fmt::format("{}, not {}", found[i].first, wanted[i].first);
-        if (found[i].second != wanted[i].second)
-            return fmt::format("{} {}, not {}", found[i].first, found[i].second, wanted[i].second);
+    for (const auto& [name, value] : wanted) {
+        const auto same =
+            std::find_if(found.begin(), found.end(), [&](const auto& pair) { return pair.first == name; });
+        if (same == found.end()) return fmt::format("no {}", name);
+        if (same->second != value) return fmt::format("{} {}, not {}", name, same->second, value);
     }
-    return found.size() == wanted.size() ? "" : "another number of settings";
+    return found.size() == wanted.size() ? "" : "settings that are not known here";
 }
 
 void check_same_render(const RenderSums& found, const RenderSums& wanted) {

@@ -31,10 +31,14 @@ struct SampleRange {
     bool operator==(const SampleRange&) const = default;
 };
 
-/// Everything that fixes the samples, by name: two renders with the same key add up, others must not.
+/// Raised when the same settings come to make another image, so that sums of before and of after are not added up. The
+/// test of the golden hashes (tests/equivalence/golden_test.cpp) tells when.
+inline constexpr int kImageVersion = 2;
+
+/// Everything that fixes the image, by name: two renders with the same key add up, others must not.
 using ImageKey = std::vector<std::pair<std::string, std::string>>;
 
-/// The first thing in which two keys differ, "depth 50, not 20"; empty where they agree.
+/// The first thing wanted that is found to be different, "depth 50, not 20"; empty where the keys agree.
 std::string difference(const ImageKey& found, const ImageKey& wanted);
 
 struct RenderSums {

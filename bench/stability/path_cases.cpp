@@ -107,7 +107,7 @@ double roulette_error(double paths, std::int64_t) {
         for (std::uint32_t hit = 0; is_alive && hit < 100'000; ++hit) {
             sum += static_cast<double>(throughput);
             throughput *= Scalar(0.99F);
-            const Scalar random = random_block<Scalar>(path, 0U, random_block_id::kBounce + hit, random_seed(103))[3];
+            const Scalar random = random_block<Scalar>({path, 0}, hit, RandomPurpose::Scatter, random_seed(103))[3];
             is_alive = Roulette::template survives<Scalar>(throughput, random);
         }
     }

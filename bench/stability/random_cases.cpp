@@ -15,7 +15,7 @@ namespace raypool::stability {
 namespace {
 
 float our_first(std::uint32_t pixel) {
-    return random_block<float>(pixel, 0, random_block_id::kFilm, random_seed(0))[0];
+    return random_block<float>({pixel, 0}, 0, RandomPurpose::Film, random_seed(0))[0];
 }
 
 /// Correlation of the first numbers of seeds that are so far apart.
@@ -43,8 +43,8 @@ std::vector<float> image_of(int threads) {
         for (int pixel = kEdge * thread / threads * kEdge; pixel < kEdge * (thread + 1) / threads * kEdge; ++pixel) {
             float sum = 0;
             for (std::uint32_t sample = 0; sample < 16; ++sample) {
-                sum += is_keyed ? random_block<float>(static_cast<std::uint32_t>(pixel), sample, random_block_id::kFilm,
-                                                      random_seed(0))[0]
+                sum += is_keyed ? random_block<float>({static_cast<std::uint32_t>(pixel), sample}, 0,
+                                                      RandomPurpose::Film, random_seed(0))[0]
                                 : generator.next();
             }
             image.push_back(sum);
@@ -64,10 +64,10 @@ double changed_pixels(double threads, std::int64_t) {
 /// A number of the integral over the square (0: smooth; 1: a disc's edge) or over six dimensions in two blocks (2: the
 /// share of the cube below a plane).
 double integrand(int which, std::uint32_t pixel, std::uint32_t sample, const RandomSeed& seed) {
-    const std::array<float, 4> a = random_block<float>(pixel, sample, 0U, seed);
+    const std::array<float, 4> a = random_block<float>({pixel, sample}, 0, RandomPurpose::Film, seed);
     if (which == 0) return std::exp(static_cast<double>(a[0])) * std::cos(static_cast<double>(a[1]));
     if (which == 1) return a[0] * a[0] + a[1] * a[1] < 0.5F ? 1 : 0;
-    const std::array<float, 4> b = random_block<float>(pixel, sample, 2U, seed);
+    const std::array<float, 4> b = random_block<float>({pixel, sample}, 0, RandomPurpose::Scatter, seed);
     return a[0] + a[1] + a[2] + a[3] + b[0] + b[1] < 3 ? 1 : 0;
 }
 constexpr double kIntegrals[] = {(std::numbers::e - 1) * 0.8414709848078965, std::numbers::pi / 8, 0.5};
@@ -103,7 +103,8 @@ double time_first(std::int64_t calls) {
 double time_block(std::int64_t calls) {
     double sum = 0;
     for (std::int64_t i = 0; i < calls / 4; ++i)
-        for (const float x : random_block<float>(static_cast<std::uint32_t>(i), 0, 0, random_seed(0)))
+        for (const float x :
+             random_block<float>({static_cast<std::uint32_t>(i), 0}, 0, RandomPurpose::Film, random_seed(0)))
             sum += static_cast<double>(x);
     return sum;
 }

@@ -53,7 +53,7 @@ double jitter_error(double width, std::int64_t samples) {
     const auto x = static_cast<Scalar>(middle);
     Errors errors;
     for (std::uint32_t sample = 0; sample < static_cast<std::uint32_t>(samples); ++sample) {
-        const Scalar jitter = random_block<Scalar>(0, sample, random_block_id::kFilm, seed)[0];
+        const Scalar jitter = random_block<Scalar>({0, sample}, 0, RandomPurpose::Film, seed)[0];
         const Vec3<Scalar> d = film == Film::Ours
                                    ? camera_ray<SceneNeeds{}, Scalar>(camera, x, x, 0, sample, seed).direction
                                    : naive::joined_column<Scalar>(camera, x, jitter);

@@ -66,6 +66,12 @@ class MpiTest(CommandTest):
         result = self.ranks(3, *adaptive, "--checkpoint", "c.sums", "--resume")
         self.assertEqual(self.hash_of(result), expected)
 
+    def test_target_error_that_is_missed_is_said_once_after_all_is_written(self):
+        result = self.ranks(2, "render", "scene.json", "--target-error", 1e-6, "--spp", 20, "--threads", 1, "-o", "a.pfm")
+        self.assertEqual((result.returncode, result.stderr.count("raypool: ")), (1, 1), result.stderr)
+        self.assertIn("raypool: --target-error 1e-06 is not reached", result.stderr)
+        self.assertTrue(result.stdout.endswith("\na.pfm\n"))
+
     def test_parts_of_different_ranks_add_up(self):
         expected = self.alone(*PAPER)
         parts = {"0:25": 3, "25:26": 2, "26:60": 1}
@@ -167,6 +173,82 @@ class MpiTest(CommandTest):
             self.assertIn(named, result.stderr.split("raypool: ")[1].split("\n")[0])
         result = self.ranks(2, *LONG, environment={"RAYPOOL_SLOW_RANK": "fast"})
         self.assertEqual((result.returncode, result.stderr.count("raypool: ")), (2, 1))
+
+    def ranks_of(self, *ranks, **keywords):
+        """One rank for each list of arguments."""
+        command = ["mpirun"]
+        for arguments in ranks:
+            command += [*([":"] if len(command) > 1 else []), "-n", "1", self.command, *map(str, arguments)]
+        return subprocess.run(command, cwd=self.folder, text=True, timeout=60, env={**os.environ, **SETTINGS},
+                              capture_output=True, stdin=subprocess.DEVNULL, check=False, **keywords)
+
+    def assert_ranks_refused(self, *ranks, named):
+        """One line from rank 0, exit 2, nothing written; and no rank that waits for another until the time is up."""
+        before = self.listing()
+        result = self.ranks_of(*ranks)
+        self.assertEqual((result.returncode, result.stdout), (2, ""), f"{ranks}: {result.stderr}")
+        self.assertEqual(result.stderr.count("raypool: "), 1, result.stderr)
+        self.assertTrue(result.stderr.split("raypool: ")[1].startswith(named), result.stderr)
+        self.assertEqual(self.listing(), before, ranks)
+
+    def test_ranks_that_would_not_render_the_same_are_refused(self):
+        def render(*more, width=100, spp=64):
+            return ("render", "paper", "--width", width, "--spp", spp, "--threads", 1, *more)
+
+        same, help_of_it = render(), ("render", "--help")
+        kept, adaptive = render("--checkpoint", "c.sums"), render("--target-error", 0.1)
+        inexact = render("--engine", "wavefront", "--accumulator", "atomic-float")
+        cases = [  # the rest of what fixes the image comes from the list that checkpoints compare (checkpoint_test.py)
+            (same, render("--seed", 5), "seed 5, not 0"),
+            (same, render(width=101), "width 101, not 100"),
+            (same, render(spp=65), "spp 65, not 64"),
+            (same, render("--precision", "double"), "precision double, not float"),
+            (same, render("--samples", "0:32"), "samples 0:32, not 0:64"),
+            (same, adaptive, "target_error 0.1, not 0"),
+            (adaptive, same, "target_error 0, not 0.1"),
+            (same, kept, "checkpoint a file, not none"),
+            (kept, same, "checkpoint none, not a file"),
+            (kept, (*kept, "--resume"), "resume on, not off"),
+            (same, render("-o", "a.png"), "output a file, not none"),
+            (same, render("--count-work"), "count_work on, not off"),
+            (same, inexact, "accumulator atomic-float, not exact"),
+            (same, help_of_it, "command help, not render"),
+            (help_of_it, same, "command render, not help"),
+        ]
+        for first, second, named in cases:
+            self.assert_ranks_refused(first, second, named=f"rank 1 of 2 differs from rank 0: {named}")
+
+    def test_another_scene_of_the_same_name_is_refused(self):
+        script = 'if [ "$OMPI_COMM_WORLD_RANK" = 1 ]; then cd elsewhere; fi; exec "$@"'
+        (self.folder / "elsewhere").mkdir()
+        scene = (self.folder / "scene.json").read_text()
+        (self.folder / "elsewhere/scene.json").write_text(scene.replace("1.5", "1.6"))
+        command = ["mpirun", "-n", "3", "sh", "-c", script, "sh", self.command, "render", "scene.json", "--spp", "4",
+                   "--checkpoint", "c.sums"]
+        result = subprocess.run(command, cwd=self.folder, env={**os.environ, **SETTINGS}, capture_output=True,
+                                text=True, timeout=60, check=False)
+        self.assertEqual((result.returncode, result.stdout), (2, ""), result.stderr)
+        self.assertRegex(result.stderr, "raypool: rank 1 of 3 differs from rank 0: scene [0-9a-f]+, not [0-9a-f]+\n")
+        self.assertFalse((self.folder / "c.sums").exists())
+
+    def test_what_shows_in_no_image_may_differ_between_ranks(self):
+        expected = self.alone(*PAPER)
+        result = self.ranks_of((*PAPER, "--threads", 1, "--checkpoint", "c.sums", "--every", 0),
+                               (*PAPER, "--threads", 2, "--engine", "wavefront", "--checkpoint", "d.sums", "--quiet"))
+        self.assertEqual(self.hash_of(result), expected)
+        self.assertFalse((self.folder / "d.sums").exists())
+
+    def test_ranks_that_fail_before_they_begin_end_all_with_one_line(self):
+        same = ("render", "scene.json", "--spp", 4, "--threads", 1, "-o", "a.pfm")
+        for other, named in [
+            (("render", "absent.json", *same[2:]), "rank 1 of 3: absent.json: no such file"),
+            ((*same, "--odd"), "rank 1 of 3: The following argument was not expected: --odd"),
+            (("info", "scene.json"), "rank 1 of 3: several ranks can only run the command render"),
+            ((*same, "--samples", "0:9"), "rank 1 of 3: --samples: must be A:B with 0 <= A < B <= spp (4), got 0:9"),
+        ]:
+            self.assert_ranks_refused(same, other, (*same, "--seed", "x"), named=named)
+        self.assert_ranks_refused((*same, "--spp", 0), ("render", "absent.json"), same,
+                                  named="--spp: Value 0 not in range")
 
     def test_error_of_one_rank_names_it_and_ends_all(self):
         script = 'if [ "$OMPI_COMM_WORLD_RANK" = 1 ]; then ulimit -s 256; fi; exec "$@"'

@@ -173,8 +173,8 @@ TEST(Camera, GivesTheLastPixelOfTheLargestImageAKeyOfItsOwn) {
     const auto pixel = static_cast<std::uint32_t>((kSize - 1) * kSize + kSize - 1);
     EXPECT_EQ(pixel, 0xffffffffU);
     const RandomSeed seed = random_seed(0);
-    EXPECT_NE(random_block<float>(pixel, 0U, 0U, seed), random_block<float>(0U, 0U, 0U, seed));
-    EXPECT_NE(random_block<float>(pixel, 0U, 0U, seed), random_block<float>(pixel - 1, 0U, 0U, seed));
+    EXPECT_NE(random_block<float>({pixel, 0}, 0, RandomPurpose::Film, seed), random_block<float>({0, 0}, 0, RandomPurpose::Film, seed));
+    EXPECT_NE(random_block<float>({pixel, 0}, 0, RandomPurpose::Film, seed), random_block<float>({pixel - 1, 0}, 0, RandomPurpose::Film, seed));
 }
 
 }  // namespace

@@ -186,16 +186,16 @@ TEST(KernelAgreement, WarpsAndElementaryFunctions) {
 TEST(KernelAgreement, RandomBlocks) {
     const auto fill = []<class S>(RandomInputs& random, Row<S>& row) {
         const auto shift = static_cast<unsigned>(random.below(32));
-        row.word(random.word()), row.word(random.word() >> shift), row.word(random.below(200));
+        row.word(random.word()), row.word(random.word() >> shift), row.word(random.word() >> random.below(32));
     };
     expect_lanes_agree(fill, []<class Real>(Arguments<Real>& in, Results<Real>& out) {
         const Uint32<Real> pixel = in.word();
-        const Uint32<Real> sample = in.word();
-        const Uint32<Real> block = in.word();
-        out(random_block<Real>(pixel, sample, block, random_seed(0)));
-        out(random_block<Real>(pixel, sample, block, {0xffffffffU, 0x80000001U}));
-        out(random_block<Real>(pixel, sample, block, random_seed(0, Sampler::Sobol)));
-        out(random_block<Real>(pixel, sample, block, {0xffffffffU, 0x80000001U, Sampler::Sobol}));
+        const PathKey<Real> path{pixel, in.word()};
+        const Uint32<Real> step = in.word();
+        out(random_block<Real>(path, step, RandomPurpose::Film, random_seed(0)));
+        out(random_block<Real>(path, step, RandomPurpose::Scatter, {0xffffffffU, 0x80000001U}));
+        out(random_block<Real>(path, step, RandomPurpose::Film, random_seed(0, Sampler::Sobol)));
+        out(random_block<Real>(path, step, RandomPurpose::Scatter, {0xffffffffU, 0x80000001U, Sampler::Sobol}));
     });
 }
 

@@ -180,7 +180,8 @@ TEST(SampleRanges, JoinWhereTheyTouchAndAreRefusedWhereTheyOverlap) {
 TEST(ImageKeys, NameTheFirstThingInWhichTheyDiffer) {
     EXPECT_EQ(difference({{"spp", "4"}, {"seed", "0"}}, {{"spp", "4"}, {"seed", "0"}}), "");
     EXPECT_EQ(difference({{"spp", "4"}, {"seed", "0"}}, {{"spp", "4"}, {"seed", "1"}}), "seed 0, not 1");
-    EXPECT_NE(difference({{"spp", "4"}}, {{"spp", "4"}, {"seed", "1"}}), "");
+    EXPECT_EQ(difference({{"spp", "4"}}, {{"image_version", "2"}, {"spp", "4"}}), "no image_version");
+    EXPECT_NE(difference({{"spp", "4"}, {"seed", "1"}}, {{"spp", "4"}}), "");
 }
 
 }  // namespace

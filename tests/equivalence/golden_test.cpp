@@ -1,6 +1,6 @@
 // The committed scenes still make the images that they made when golden_hashes.json was written: on any compiler and
-// for any instruction set. Where an image had to change, write the hashes and pictures anew, look at the pictures, and
-// say in the change why:
+// for any instruction set. Where an image had to change, raise kImageVersion (core/sums_file.h), write the hashes and
+// pictures anew, look at the pictures, and say in the change why:
 //
 //     RAYPOOL_UPDATE_GOLDEN=1 ctest --preset release --tests-regex Golden
 //
@@ -13,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/sums_file.h"
 #include "tests/equivalence/same_image.h"
 
 namespace raypool {
@@ -41,7 +42,12 @@ Rendered golden_render(const std::string& scene_name) {
 
 void update(const std::string& scene_name, const Rendered& in_float, const Rendered& in_double) {
     nlohmann::json hashes = read_hashes();
-    hashes[scene_name] = {{"float", in_float.hash()}, {"double", in_double.hash()}};
+    nlohmann::json made = {{"float", in_float.hash()}, {"double", in_double.hash()}, {"image_version", kImageVersion}};
+    const nlohmann::json committed = hashes.value(scene_name, nlohmann::json::object());
+    if (committed.value("float", "") == made["float"] && committed.value("double", "") == made["double"]) return;
+    ASSERT_LT(committed.value("image_version", 0), kImageVersion)
+        << "checkpoints of before and of after must differ: raise kImageVersion (core/sums_file.h)";
+    hashes[scene_name] = std::move(made);
     std::ofstream(kFolder / "golden_hashes.json") << hashes.dump(2) << "\n";
     std::filesystem::create_directories(kFolder / "golden");
     write_image(picture_of(scene_name), in_float.image(), {});
@@ -75,8 +81,10 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(all_scenes()), [](con
 TEST(GoldenHashes, AreOfScenesThatExist) {
     const std::vector<std::string> scenes = all_scenes();
     const nlohmann::json committed = read_hashes();
-    for (const auto& [name, hashes] : committed.items())
+    for (const auto& [name, hashes] : committed.items()) {
         EXPECT_NE(std::find(scenes.begin(), scenes.end(), name), scenes.end()) << name;
+        EXPECT_LE(hashes.at("image_version").get<int>(), kImageVersion) << name;
+    }
 }
 
 }  // namespace
