@@ -109,7 +109,7 @@ std::int64_t check_part(const Imf::Header& header, std::int64_t channel_count, s
     const std::int64_t height = height_of(header.dataWindow());
     check_image_size(width, height, kMaxImageSide);
     std::int64_t block_width = width;
-    std::int64_t chunk_count = (height + rows_of_block(header) - 1) / rows_of_block(header);
+    std::int64_t chunk_count = 0;
     if (header.hasTileDescription()) {
         const Imf::TileDescription& tile = header.tileDescription();
         if (tile.xSize < 1 || tile.ySize < 1 || tile.xSize > kMaxImageSide || tile.ySize > kMaxImageSide)
@@ -119,6 +119,8 @@ std::int64_t check_part(const Imf::Header& header, std::int64_t channel_count, s
         const std::int64_t rows = (height + tile.ySize - 1) / tile.ySize;
         chunk_count = columns * rows;
         block_width = columns * tile.xSize;
+    } else {
+        chunk_count = height / rows_of_block(header);
     }
     if (header.hasChunkCount()) chunk_count = std::max<std::int64_t>(chunk_count, header.chunkCount());
     const std::int64_t most_values = std::max(kMaxExrBlockValues, kMaxExrExpansion * file_bytes);
