@@ -155,8 +155,8 @@ double most_samples(const FixedPoint& fixed) {
 
 std::string difference(const ImageKey& found, const ImageKey& wanted) {
     for (const auto& [name, value] : wanted) {
-        const auto same =
-            std::find_if(found.begin(), found.end(), [&](const auto& pair) { return pair.first == name; });
+        const auto same = std::find_if(found.begin(), found.end(),
+                                       [&wanted_name = name](const auto& pair) { return pair.first == wanted_name; });
         if (same == found.end()) return fmt::format("no {}", name);
         if (same->second != value) return fmt::format("{} {}, not {}", name, same->second, value);
     }

@@ -83,7 +83,7 @@ TEST(GoldenHashes, AreOfScenesThatExist) {
     const nlohmann::json committed = read_hashes();
     for (const auto& [name, hashes] : committed.items()) {
         EXPECT_NE(std::find(scenes.begin(), scenes.end(), name), scenes.end()) << name;
-        EXPECT_LE(hashes["image_version"].get<int>(), kImageVersion) << name;
+        EXPECT_LE(hashes.at("image_version").get<int>(), kImageVersion) << name;
     }
 }
 
