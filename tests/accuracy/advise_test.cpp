@@ -2,7 +2,9 @@
 /// depends on the machine.
 #include "bench/accuracy/advise.h"
 
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -94,6 +96,70 @@ TEST(Advise, TriesSplittingOnlyWhereThereIsGlass) {
     };
     EXPECT_TRUE(tries_splitting("glass_stack"));
     EXPECT_FALSE(tries_splitting("one_sphere"));
+}
+
+/// A closed grey room whose ceiling lamp has edges of `edge` times the room's, and always the same power.
+Scene room(double edge) {
+    Scene scene;
+    scene.width = scene.height = 16;
+    scene.camera.look_from = {0.5, 0.45, 0.02};
+    scene.camera.look_at = {0.5, 0.4, 1};
+    scene.camera.vertical_fov_degrees = 75;
+    scene.background.bottom = scene.background.top = Vector3d(0, 0, 0);
+    scene.textures.resize(2);
+    scene.textures[0].even = Vector3d(0.5, 0.5, 0.5);
+    scene.textures[1].even = Vector3d(0.9, 0.9, 0.9) / (edge * edge);
+    scene.materials.resize(2);
+    scene.materials[1].kind = Material::Kind::Emissive;
+    scene.materials[1].texture_id = 1;
+    const Vector3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), origin(0, 0, 0);
+    for (const auto& [corner, u, v] :
+         {std::array{origin, x, y}, {origin, y, z}, {origin, z, x}, {x, y, z}, {y, z, x}, {z, x, y}})
+        scene.quads.push_back({corner, u, v, 0});
+    const double middle = 0.5 - 0.5 * edge;
+    scene.quads.push_back({{middle, 1 - 0.01 * edge, middle}, edge * x, edge * z, 1});
+    return scene;
+}
+
+AdviseOptions counted_dearly() {
+    AdviseOptions options;
+    options.cost = [](const RenderReport& report) { return 1e-5 * static_cast<double>(report.segments()); };
+    return options;
+}
+
+TEST(Advise, PromisesNothingWhereItsTrialsFoundTooLittleLight) {
+    for (const double edge : {0.01, 0.003, 0.001}) {
+        EXPECT_THROW(advise(room(edge), {0.1, {}}, counted_dearly()), NothingPromised) << edge;
+        EXPECT_THROW(advise(room(edge), {{}, 10.0}, counted_dearly()), NothingPromised) << edge;
+    }
+}
+
+TEST(Advise, KeepsItsPromiseInARoomWithASmallLamp) {
+    constexpr double kTarget = 0.2;
+    const Scene description = room(0.1);
+    const SceneInBoth scene(description);
+    Configuration exact;
+    exact.roulette = true;
+    exact.depth = 100;
+    const Values truth = render_image(exact, scene, {0, 16384, 77, 2}).values;
+    const Offer best = advise(description, {kTarget, {}}, counted()).offers.front();
+    int kept = 0;
+    for (std::uint64_t seed = 100; seed < 116; ++seed) {
+        const Values image = render_image(best.pilot.configuration, scene, {0, best.spp, seed, 2}).values;
+        kept += mean_squared_difference(image, truth) <= kTarget * kTarget ? 1 : 0;
+    }
+    EXPECT_GE(kept, 15) << to_string(best.pilot.configuration) << ", " << best.spp << " spp";
+}
+
+TEST(Advise, ChargesADepthWithTheLightThatNoTrialSawItCutOff) {
+    const Advice advice = advise(room(0.1), {0.2, {}}, counted());
+    double before = std::numeric_limits<double>::infinity();
+    for (const Simplification& s : advice.simplifications) {
+        if (!s.text.starts_with("depth ")) continue;
+        EXPECT_GT(s.unseen_bias, 0) << s.text;
+        EXPECT_LE(s.unseen_bias, before * (1 + 1e-9)) << s.text;
+        before = s.unseen_bias;
+    }
 }
 
 TEST(Advise, RefusesWhatNoNumberOfSamplesReaches) {

@@ -36,6 +36,25 @@ class Advise(CommandTest):
         self.assert_refused("advise", "absent.json", "--target-error", 0.1, named="absent.json")
         self.assert_refused("advise", "scene.json", "--target-error", 0.1, "--json", "absent/a.json", named="absent")
 
+    def test_promises_nothing_where_its_trials_found_too_little_light(self):
+        quads = [([0, 0, 0], [1, 0, 0], [0, 0, 1]), ([0, 1, 0], [1, 0, 0], [0, 0, 1]), ([0, 0, 0], [0, 1, 0], [0, 0, 1]),
+                 ([1, 0, 0], [0, 1, 0], [0, 0, 1]), ([0, 0, 0], [1, 0, 0], [0, 1, 0]), ([0, 0, 1], [1, 0, 0], [0, 1, 0])]
+        shapes = [{"type": "quad", "corner": c, "edge_u": u, "edge_v": v, "material": "grey"} for c, u, v in quads]
+        lamp = {"type": "quad", "corner": [0.5, 0.999, 0.5], "edge_u": [0.001, 0, 0], "edge_v": [0, 0, 0.001],
+                "material": "lamp"}
+        self.write("room.json", {
+            "description": "A closed room with a tiny lamp.",
+            "image": {"width": 16, "height": 16},
+            "camera": {"look_from": [0.5, 0.45, 0.02], "look_at": [0.5, 0.4, 1], "vertical_fov_degrees": 75},
+            "background": [0, 0, 0],
+            "materials": {"grey": {"type": "diffuse", "albedo": [0.3, 0.3, 0.3]},
+                          "lamp": {"type": "emissive", "radiance": [9e5, 9e5, 9e5]}},
+            "shapes": [*shapes, lamp]})
+        refused = self.run_command("advise", "room.json", "--target-error", 0.1, "--threads", 1)
+        self.assertEqual((refused.returncode, refused.stdout), (1, ""))
+        self.assertIn("cannot promise anything", refused.stderr)
+        self.assertEqual(refused.stderr.count("\n"), 1)
+
 
 if __name__ == "__main__":
     main()

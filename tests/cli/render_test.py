@@ -68,6 +68,38 @@ class Small(CommandTest):
         adaptive = json.loads((self.folder / "s.json").read_text())["adaptive"]
         self.assertEqual(adaptive["samples_per_pixel"]["most"], 20)
 
+    HIDDEN_LAMP = {
+        "description": "A sky over a plane that hides a lamp.",
+        "image": {"width": 16, "height": 16},
+        "camera": {"look_from": [0.3, 2.1, 5.7], "look_at": [0, 0.5, 0], "vertical_fov_degrees": 50},
+        "background": [0.04, 0.04, 0.04],
+        "materials": {"white": {"type": "diffuse", "albedo": [0.8, 0.8, 0.8]},
+                      "lamp": {"type": "emissive", "radiance": [1e6, 1e6, 1e6]}},
+        "shapes": [{"type": "plane", "point": [0, 0, 0], "normal": [0, 1, 0], "material": "white"},
+                   {"type": "sphere", "center": [0, 0.6, 0], "radius": 0.6, "material": "white"},
+                   {"type": "sphere", "center": [0, -2, 0], "radius": 0.5, "material": "lamp"}]}
+
+    def test_target_error_is_estimated_beside_a_hidden_lamp_and_not_called_reached(self):
+        self.write("hidden.json", self.HIDDEN_LAMP)
+        unknown = self.run_command("render", "hidden.json", "--target-error", 5e-4, "--spp", 4096, "--stats", "s.json")
+        self.assertEqual(unknown.returncode, 1)
+        self.assertIn("not known", unknown.stderr)
+        adaptive = json.loads((self.folder / "s.json").read_text())["adaptive"]
+        self.assertEqual(adaptive["target"], "not known")
+        self.assertGreater(adaptive["rmse_estimate"], 1e-5)
+        self.assertLessEqual(adaptive["rmse_estimate"], 5e-4)
+        self.assertGreater(adaptive["rmse_of_unseen_light"], 1)
+
+    def test_says_where_steps_of_sums_are_coarse_for_dim_light(self):
+        self.assertNotIn("coarse", self.run_well("render", "scene.json", "--spp", 1).stdout)
+        self.write("hidden.json", changed(self.HIDDEN_LAMP, "/background", [1e-6, 1e-6, 1e-6]))
+        self.assertIn("the dimmest light, 1e-06, is coarse",
+                      self.run_well("render", "hidden.json", "--spp", 1, "--stats", "s.json").stdout)
+        sums = json.loads((self.folder / "s.json").read_text())["sums"]
+        self.assertEqual(sums["dimmest_light"], 1e-6)
+        self.assertGreater(sums["step"], 1e-8)
+        self.assertIn("coarse", self.run_well("info", "hidden.json").stdout)
+
     def test_empty_scene_is_its_background(self):
         empty = changed(changed(changed(SCENE, "/shapes", []), "/materials"), "/textures")
         for precision in ("float", "double"):
