@@ -48,8 +48,9 @@ RAYPOOL_INLINE SurfacePoint<Real> surface_point(const Ray<Real>& ray, const Real
     if constexpr (needs.flat) {
         const Mask<Real> is_flat = radius == Real(0);
         point.outward = select<Real>(is_flat, stored, point.outward);
-        const Real height = dot<Real>(vec3<Real>(p[0] - motion[0], p[1] - motion[1], p[2] - motion[2]), stored);
-        point.position = select<Real>(is_flat, along<Real>(p, -height, stored), point.position);
+        // Not the height above the plane, negated: gcc 12 makes one instruction of that, with another sign of zero.
+        const Real depth = dot<Real>(vec3<Real>(motion[0] - p[0], motion[1] - p[1], motion[2] - p[2]), stored);
+        point.position = select<Real>(is_flat, along<Real>(p, depth, stored), point.position);
     }
     point.is_front = dot<Real>(ray.direction, point.outward) < Real(0);
     point.normal = select<Real>(point.is_front, point.outward, -point.outward);
