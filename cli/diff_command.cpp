@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -52,7 +53,7 @@ Tolerance parse_tolerance(const std::string& text) {
     const char* const end = text.data() + text.size();
     const char* const number = equals == std::string::npos ? end : text.data() + equals + 1;
     const auto [stop, error] = std::from_chars(number, end, most);
-    if (measure == std::end(kMeasures) || error != std::errc() || stop != end || !(most >= 0)) {
+    if (measure == std::end(kMeasures) || error != std::errc() || stop != end || !(most >= 0) || std::isinf(most)) {
         throw InputError(fmt::format(
             "--tolerance: must be MEASURE=X with X >= 0 and mse, rmse, relmse, largest, ulp or pixels, got {}", text));
     }
@@ -187,8 +188,9 @@ int diff(const DiffOptions& options) {
 
 void add_diff_command(CLI::App& app, int& status) {
     auto options = std::make_shared<DiffOptions>();
-    CLI::App* command =
-        app.add_subcommand("diff", "Compare two images; exit 1 if any bit differs, or more than --tolerance");
+    CLI::App* command = app.add_subcommand(
+        "diff",
+        "Compare two images; exit 1 if any bit differs, or more than --tolerance, or if not all of a file is compared");
     command->add_option("a", options->a, "Image: .png, .exr or .pfm")->required();
     command->add_option("b", options->b, "The reference, of the same size")->required();
     command

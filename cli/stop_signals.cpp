@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdint>
 #include <ctime>
@@ -28,6 +29,7 @@ bool is_heard(int signal) {
 
 /// Does only what a signal handler may do.
 void receive(int signal) {
+    const int errno_before = errno;
     timespec time{};
     clock_gettime(CLOCK_MONOTONIC, &time);
     const std::int64_t now = std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
@@ -35,6 +37,7 @@ void receive(int signal) {
     if (first_ns.compare_exchange_strong(before, now)) {
         first_signal = signal;
         if (const std::string* words = last_words) has_said = write(STDERR_FILENO, words->data(), words->size()) > 0;
+        errno = errno_before;
         return;
     }
     if (signal == SIGXCPU || now - before < kRepetitionNs) return;

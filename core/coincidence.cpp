@@ -49,13 +49,14 @@ double scene_diagonal(const Scene& scene) {
 /// each weighted by |n|, axis by axis, so that a plane across an axis is known to an ulp of one coordinate. To this
 /// comes what putting back leaves of the ray's own error: that was at most 9 diagonals before (7 from the distance, one
 /// for each operation of o + t d), and is multiplied by at most 7 roundoffs (4 as above, 2 for the normal's length, 1).
+/// It counts for no more than all the rest: in float a sun 1e11 away would else make one plane of a small box's faces.
 template <class Scalar>
 double flat_bound(const Vector3d& x, const Vector3d& n, const Vector3d& a, const Vector3d& b, double diagonal) {
     constexpr double u = kRoundoff<Scalar>;
     const Vector3d weight = n.cwiseAbs();
     const double first_order = 2 * weight.dot(a.cwiseAbs() + b.cwiseAbs() + x.cwiseAbs()) +
                                5 * weight.dot((x - a).cwiseAbs() + (x - b).cwiseAbs());
-    return u * first_order + 63 * u * u * diagonal;
+    return u * first_order + std::min(63 * u * u * diagonal, u * first_order);
 }
 
 /// The same for two spheres, any normal: a bound of |centre - centre'| + |radius - radius'|. In units of roundoff:
@@ -126,9 +127,9 @@ class Finder {
             const Sphere& sphere = scene_.spheres[i];
             const double key =
                 kKeyA.dot(center(sphere, open)) + kKeyB.dot(center(sphere, close)) + 0.5436 * sphere.radius;
-            // The coefficients add up to less than 5, and the bounds of spheres that coincide differ by far less
-            // than 2.
-            const double window = 10 * sphere_bound<Scalar>(sphere, sphere);
+            // A difference of the bound in all numbers is one of less than 3 in the key, and the bounds of spheres that
+            // coincide are nearly equal.
+            const double window = 4 * sphere_bound<Scalar>(sphere, sphere);
             if (kept.find(key, window, [&](std::uint32_t k) { return coincide(scene_.spheres[k], sphere); })) {
                 out_.is_hidden[i] = true;
             } else {
@@ -154,6 +155,9 @@ class Finder {
 
     void hide_planes() {
         const auto first_plane = static_cast<std::uint32_t>(scene_.quads.size());
+        double described = 0;
+        for (std::uint32_t i = 0; i < scene_.planes.size(); ++i)
+            described = std::max(described, described_[first_plane + i]);
         NearbyKeys kept;
         for (std::uint32_t i = 0; i < scene_.planes.size(); ++i) {
             const Coincidence::Flat& flat = out_.flats[first_plane + i];
@@ -161,7 +165,7 @@ class Finder {
             const double key = kKeyA.dot(flat.point) + kKeyB.dot(n.cwiseProduct(n)) +
                                kKeyA.dot(Vector3d(n[1] * n[2], n[2] * n[0], n[0] * n[1]));
             constexpr double u = kRoundoff<Scalar>;
-            const double window = 200 * u * (1 + flat.point.norm() + u * diagonal_) + 10 * described_[first_plane + i];
+            const double window = 200 * u * (1 + flat.point.norm() + u * diagonal_) + 10 * described;
             if (kept.find(key, window, [&](std::uint32_t k) { return planes_coincide(k, i); })) {
                 out_.is_hidden[id(first_plane + i)] = true;
             } else {

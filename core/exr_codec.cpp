@@ -304,10 +304,13 @@ ImageContents decode_exr(BytesView bytes) {
     Imf::MultiPartInputFile file(stream);
     const Layer layer = find_layer(file);
     const Imf::Header& header = file.header(layer.part);
+    const Window& display = header.displayWindow();  // a caller may fill it
+    check_image_size(width_of(display), height_of(display), kMaxImageSide, kMaxImagePixels,
+                     "width and height of the display window");
 
     ImageContents contents;
     contents.data_window = pixel_window(header.dataWindow());
-    contents.display_window = pixel_window(header.displayWindow());
+    contents.display_window = pixel_window(display);
     contents.left_out = left_out(file, layer);
     contents.primaries = primaries_of(header);
     for (auto entry = header.begin(); entry != header.end(); ++entry) {

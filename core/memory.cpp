@@ -72,9 +72,12 @@ std::size_t reclaimable(const std::string& folder) {
     std::ifstream file(folder + "/memory.stat");
     std::string name;
     std::size_t bytes = 0;
-    while (file >> name >> bytes)
-        if (name == "inactive_file" || name == "total_inactive_file") return bytes;
-    return 0;
+    std::size_t own = 0;
+    while (file >> name >> bytes) {
+        if (name == "total_inactive_file") return bytes;  // version 1: with the groups below, as usage is
+        if (name == "inactive_file") own = bytes;
+    }
+    return own;
 }
 
 }  // namespace

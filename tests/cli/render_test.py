@@ -432,7 +432,7 @@ class Diff(CommandTest):
             beyond = self.run_command("diff", "a.exr", "b.exr", *[w for t in tolerances for w in ("--tolerance", t)])
             self.assertEqual(beyond.returncode, 1)
             self.assertIn(f"beyond tolerance   {tolerances[-1].split('=')[0]} is ", beyond.stdout)
-        for wrong in ("rmse", "rmse=", "rmse=-1", "rmse=nan", "rsme=1", "psnr=40", "rmse=1x"):
+        for wrong in ("rmse", "rmse=", "rmse=-1", "rmse=nan", "rmse=inf", "rsme=1", "psnr=40", "rmse=1x"):
             self.assert_refused("diff", "a.exr", "b.exr", "--tolerance", wrong, named=["--tolerance", wrong])
 
     def test_says_of_how_many_samples_it_can_judge(self):
@@ -499,6 +499,8 @@ class Diff(CommandTest):
         self.assertNotIn("not compared", inside.stdout)
         self.write("shown.exr", exr(half, (0, 0, 1, 1), (0, 0, 1, 1)))
         self.assert_refused("diff", "whole.exr", "shown.exr", named=["4 x 3", "2 x 2"])
+        self.write("claim.exr", exr(half, display, (0, 0, 10**9, 10**9)))
+        self.assert_refused("diff", "claim.exr", "claim.exr", named=["claim.exr", "display window"])
 
     def test_ends_with_two_for_what_cannot_be_compared(self):
         self.run_well("render", "scene.json", "--spp", 1, "-o", "a.pfm")

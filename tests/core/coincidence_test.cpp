@@ -237,6 +237,40 @@ TEST(CoincidentShapes, ThatMoveApartStayTwo) {
     EXPECT_TRUE(find_coincidence<float>(scene).is_hidden[1]) << "nothing has moved yet";
 }
 
+TYPED_TEST(Coincident, FacesOfASmallBoxStayTheirOwnHoweverLargeTheScene) {
+    TestScene scene = under_a_sky();
+    const std::int32_t grey = scene.diffuse(0.8);
+    constexpr double kEdge = 0.02;
+    const Vector3d low(-0.01, 0, -0.01);
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vector3d u = kEdge * Vector3d::Unit((axis + 1) % 3);
+        const Vector3d v = kEdge * Vector3d::Unit((axis + 2) % 3);
+        scene.quad(low, u, v, grey);
+        scene.quad(low + kEdge * Vector3d::Unit(axis), u, v, grey);
+    }
+    scene.spheres.push_back({{0, 1.5e11, 0}, {0, 1.5e11, 0}, 6.9e8, scene.emitter(5)});
+    const Coincidence found = find_coincidence<TypeParam>(scene);
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t k = 0; k < i; ++k) EXPECT_NE(found.flats[i].group, found.flats[k].group) << i << " and " << k;
+}
+
+TYPED_TEST(Coincident, PlanesAreOneWhicheverPointTheyAreGivenBy) {
+    RandomInputs random(5);
+    for (int i = 0; i < 200; ++i) {
+        const Vector3d normal =
+            Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1, 1)).normalized();
+        const Vector3d along = normal.unitOrthogonal();
+        const Plane far{Vector3d(normal + 1e6 * along), normal, 0};
+        const Plane near{normal, normal, 0};
+        for (const bool far_first : {true, false}) {
+            Scene scene = under_a_sky();
+            scene.planes = far_first ? std::vector{far, near} : std::vector{near, far};
+            EXPECT_TRUE(find_coincidence<TypeParam>(scene).is_hidden[1])
+                << i << (far_first ? " far first" : " near first");
+        }
+    }
+}
+
 /// A slab of glass whose faces are all listed twice, in other words, bends light as a slab does.
 TYPED_TEST(Coincident, GlassFacesRefractOnce) {
     const Frame frame{{0.1, 0.2, 0.3}, {0.36, 0.48, 0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, -0.6}};

@@ -255,6 +255,19 @@ TEST(ExrKinds, WindowsAndPrimariesAreTold) {
     EXPECT_NE(odd.primaries.find("red 0.708"), std::string::npos) << odd.primaries;
 }
 
+TEST(ExrKinds, DisplayWindowsThatNoImageFillsAreRefused) {
+    const ScratchFolder folder;
+    const Channels channels{"R", "G", "B"};
+    Imf::Header header = header_of(channels);
+    for (const auto& [width, height] : {std::pair{1'000'000'000, 1'000'000'000}, {65537, 1}, {65536, 65536}}) {
+        header.displayWindow().max.x = width - 1;
+        header.displayWindow().max.y = height - 1;
+        write_lines(folder / "wide.exr", header, channels);
+        const std::string reason = refusal(folder / "wide.exr");
+        EXPECT_EQ(reason.find("width and height of the display window must be within [1, 65536]"), 0U) << reason;
+    }
+}
+
 TEST(ExrKinds, RefusesWhatHasNoColourOrTilesThatAreNotThere) {
     const ScratchFolder folder;
     write_lines(folder / "depth.exr", header_of({"Z"}), {"Z"});

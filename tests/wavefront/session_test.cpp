@@ -38,7 +38,7 @@ std::vector<NamedEngine> engines() {
     return all;
 }
 
-RenderSettings settings_of(std::int64_t spp, int threads) {
+RenderSettings session_settings(std::int64_t spp, int threads) {
     RenderSettings settings;
     settings.end_sample = spp;
     settings.threads = threads;
@@ -61,13 +61,13 @@ TEST(Session, AddsUpToOneRenderWhateverItsUnitsAndHoweverOftenItIsMerged) {
     constexpr std::int64_t kSpp = 6;
     for (const Moments moments : {Moments::First, Moments::Second}) {
         Framebuffer expected = empty_framebuffer(scene, kSpp, moments);
-        const RenderReport whole = recursive::IterativeEngine().render(scene, settings_of(kSpp, 1), expected);
+        const RenderReport whole = recursive::IterativeEngine().render(scene, session_settings(kSpp, 1), expected);
         for (const NamedEngine& named : engines()) {
             for (const Grain& grain : {Grain{Grain::Kind::Pixel, 1}, {Grain::Kind::Line, 1}, {Grain::Kind::Tile, 5}}) {
                 for (const int threads : {1, 3}) {
                     SCOPED_TRACE(
                         fmt::format("{}, grain {}, {} threads", named.name, static_cast<int>(grain.kind), threads));
-                    RenderSettings settings = settings_of(1, threads);  // samples are the units' business
+                    RenderSettings settings = session_settings(1, threads);  // samples are the units' business
                     settings.grain = grain;
                     Framebuffer framebuffer = empty_framebuffer(scene, kSpp, moments);
                     const auto session = named.engine->begin(scene, settings, framebuffer);
@@ -104,7 +104,7 @@ TEST(Session, HasEverySecondOfItsReportAsSetupOrAsWorkOrWaitingOfEachThread) {
     for (const NamedEngine& named : engines()) {
         SCOPED_TRACE(named.name);
         Framebuffer framebuffer = empty_framebuffer(scene, 4);
-        const auto session = named.engine->begin(scene, settings_of(4, 2), framebuffer);
+        const auto session = named.engine->begin(scene, session_settings(4, 2), framebuffer);
         const RenderReport setup = session->report();
         EXPECT_EQ(setup.seconds, setup.setup_s);
         if (named.name != "iterative") {  // which has nothing to set up
@@ -129,7 +129,7 @@ TEST(Session, TimesTheLastPassOfAccumulatorsThatHaveOne) {
           Accumulator::AtomicPlanarInt64, Accumulator::AtomicFloat, Accumulator::AtomicDouble}) {
         Framebuffer framebuffer = empty_framebuffer(scene, 1);
         Trace trace;
-        RenderSettings settings = settings_of(1, 2);
+        RenderSettings settings = session_settings(1, 2);
         settings.trace = &trace;
         const PoolSettings pool{.accumulator = accumulator};
         const auto session = WavefrontEngine(pool).begin(scene, settings, framebuffer);
@@ -149,7 +149,7 @@ TEST(Session, TakesTheMemoryOfOneRenderForAnyNumberOfUnits) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 16));
     for (const NamedEngine& named : engines()) {
         Framebuffer framebuffer = empty_framebuffer(scene, 20);
-        const auto session = named.engine->begin(scene, settings_of(20, 2), framebuffer);
+        const auto session = named.engine->begin(scene, session_settings(20, 2), framebuffer);
         const std::size_t before = session->report().pool_bytes;
         for (std::int64_t sample = 0; sample < 20; ++sample) session->add({sample, sample + 1, nullptr});
         session->merge();
@@ -163,7 +163,7 @@ TEST(PrefixSumAppend, TakesTheMemoryOfAPoolForEachThreadAndOneMore) {
         const PoolSettings pool{
             .scope = PoolScope::Shared, .append = append, .accumulator = Accumulator::AtomicInt64, .capacity = 1 << 16};
         Framebuffer framebuffer = empty_framebuffer(scene, 1);
-        return WavefrontEngine(pool).begin(scene, settings_of(1, threads), framebuffer)->report().pool_bytes;
+        return WavefrontEngine(pool).begin(scene, session_settings(1, threads), framebuffer)->report().pool_bytes;
     };
     const std::size_t one = pool_bytes(Append::Atomic, 3) - pool_bytes(Append::InPlace, 3);
     EXPECT_GE(one, (std::size_t{1} << 16) * 52);
@@ -173,12 +173,12 @@ TEST(PrefixSumAppend, TakesTheMemoryOfAPoolForEachThreadAndOneMore) {
 TEST(Threads, ThatOpenMpDoesNotGiveAreInNoReportAndNoTraceAndAllIsRenderedWithoutThem) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 24));
     Framebuffer expected = empty_framebuffer(scene, 2);
-    recursive::IterativeEngine().render(scene, settings_of(2, 1), expected);
+    recursive::IterativeEngine().render(scene, session_settings(2, 1), expected);
     for (const NamedEngine& named : engines()) {
         SCOPED_TRACE(named.name);
         Framebuffer framebuffer = empty_framebuffer(scene, 2);
         Trace trace;
-        RenderSettings settings = settings_of(2, 3);
+        RenderSettings settings = session_settings(2, 3);
         settings.trace = &trace;
         RenderReport report;
 #pragma omp parallel num_threads(2)
@@ -202,7 +202,7 @@ TEST(Memory, ThatIsNotThereIsRefusedBeforeAnythingIsTakenOrRendered) {
         Framebuffer framebuffer = empty_framebuffer(scene, 1);
         const std::string before = framebuffer.hash();
         Progress progress;
-        RenderSettings settings = settings_of(1, 4000);
+        RenderSettings settings = session_settings(1, 4000);
         settings.progress = &progress;
         try {
             WavefrontEngine(pool).render(scene, settings, framebuffer);
