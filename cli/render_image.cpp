@@ -132,10 +132,12 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
 
 ImageKey image_key(const Scene& scene, const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
+    // What differs first is named, so a width goes before the scene, whose hash covers the size, and a height behind
+    // it.
     return {{"image_version", fmt::to_string(kImageVersion)},
             {"width", fmt::to_string(scene.width)},
-            {"height", fmt::to_string(scene.height)},
             {"scene", scene_hash(scene)},
+            {"height", fmt::to_string(scene.height)},
             {"depth", fmt::to_string(settings.depth)},
             {"split_depth", fmt::to_string(settings.split_depth)},
             {"seed", fmt::to_string(settings.seed)},
