@@ -380,7 +380,7 @@ class CheckpointTest(CommandTest):
                                ("precision", "double"), ("sampler", "sobol"), ("target-error", 0.1)):
             self.assert_refused(*render(**{setting: value}), "--checkpoint", "c.sums", "--resume",
                                 named=["c.sums", setting.replace("-", "_")])
-        self.assert_refused("render", "cornell", *RENDER[2:], "--checkpoint", "c.sums", "--resume", named="height")
+        self.assert_refused("render", "cornell", *RENDER[2:], "--checkpoint", "c.sums", "--resume", named="scene")
         (self.folder / "bad.sums").write_text("{}\n")
         self.assert_refused("merge", "bad.sums", named="bad.sums")
         self.assert_refused(*RENDER, "--checkpoint", "absent/c.sums", named="absent")
