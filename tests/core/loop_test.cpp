@@ -30,7 +30,9 @@ TEST(WorkItems, HoldEveryPixelOnce) {
 }
 
 TEST(WorkItems, OfAListHoldItsPixelsOnceAndAreNoMoreThanNeeded) {
-    for (const auto& [width, height] : {std::pair{1, 1}, {1, 17}, {17, 1}, {13, 7}, {16, 16}, {33, 20}}) {
+    for (const auto& size : {std::pair{1, 1}, {1, 17}, {17, 1}, {13, 7}, {16, 16}, {33, 20}}) {
+        const std::int64_t width = size.first;  // lambdas take no bindings by reference
+        const std::int64_t height = size.second;
         for (const std::uint32_t step : {1U, 2U, 5U, 40U, 1000U}) {
             std::vector<std::uint32_t> list;
             for (auto pixel = step / 2; pixel < static_cast<std::uint32_t>(width * height); pixel += step)
