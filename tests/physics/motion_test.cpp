@@ -46,6 +46,7 @@ TEST(MovingSphere, CoversAPixelForThePartOfTheShutterThatItIsThere) {
         const TestScene scene = moving_sphere(open, close);
         const std::vector<double> values = pixel_values(render<float>(scene, kSpp, 2));
         std::vector<double> squares;
+        double variance = 0;  // of the sum of all pixels
         for (std::int64_t i = 0; i < scene.width * scene.height; ++i) {
             const double left = static_cast<double>(i % scene.width) / kPixelsPerUnit - 4;
             const double top = kHalfHeight - static_cast<double>(i / scene.width) / kPixelsPerUnit;
@@ -56,6 +57,7 @@ TEST(MovingSphere, CoversAPixelForThePartOfTheShutterThatItIsThere) {
                 const double y = top - (k / kSteps + 0.5) / kSteps / kPixelsPerUnit;
                 expected += covered_part(x, y, open, close) / (kSteps * kSteps);
             }
+            variance += expected * (1 - expected) / kSpp;
             const double value = values[static_cast<std::size_t>(i)];
             if (expected < 0.02 || expected > 0.98) {
                 EXPECT_NEAR(value, expected, 0.1);
@@ -68,7 +70,9 @@ TEST(MovingSphere, CoversAPixelForThePartOfTheShutterThatItIsThere) {
         double sum = 0;
         for (const double value : values) sum += value;
         const double area = sum / (kPixelsPerUnit * kPixelsPerUnit);
-        EXPECT_NEAR(area, std::numbers::pi, 0.03) << "what moves grows no larger";
+        constexpr double kPixelsPerArea = kPixelsPerUnit * kPixelsPerUnit;
+        EXPECT_TRUE(estimate_agrees(area, std::sqrt(variance) / kPixelsPerArea, std::numbers::pi))
+            << "what moves grows no larger";
     }
 }
 
