@@ -63,14 +63,18 @@ class RankSession : public RenderSession {
           scene_(scene),
           progress_(settings.progress),
           framebuffer_(framebuffer),
+          session_(engine.begin(scene, without_rounds(settings), framebuffer)),
           is_pending_(framebuffer.has_squares() ? static_cast<std::size_t>(scene.pixel_count()) : 0) {
-        RenderSettings own = settings;
-        own.log_rounds = false;  // they would say nothing of the others' rounds
-        session_ = engine.begin(scene, own, framebuffer);
         report_ = session_->report();
     }
 
   private:
+    /// They would say nothing of the other ranks' rounds.
+    static RenderSettings without_rounds(RenderSettings settings) {
+        settings.log_rounds = false;
+        return settings;
+    }
+
     RenderReport render(const RenderUnit& all) override {
         const double start = omp_get_wtime();
         const std::int64_t places =

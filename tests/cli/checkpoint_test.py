@@ -201,7 +201,11 @@ class CheckpointTest(CommandTest):
         (self.folder / "scratch").mkdir()
         (self.folder / "link.sums").symlink_to("scratch/c.sums")
         process = self.start(*render(spp=100000), "--checkpoint", "link.sums")
-        for more in ((), ("--resume",)):  # from its first moment, and later
+        deadline = time.monotonic() + 60
+        while not list((self.folder / "scratch").glob(".raypool-*.lock")):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.01)
+        for more in ((), ("--resume",)):  # before there is a checkpoint, and later
             result = self.run_command(*render(spp=100000), "--checkpoint", "scratch/c.sums", *more)
             self.assert_one_line(result, 2, "c.sums")
             self.wait_for("scratch/c.sums", process)
