@@ -26,7 +26,8 @@ struct Coincidence {
     std::vector<Flat> flats;      ///< by primitive id, quads first, less the number of spheres
 };
 
-/// For hits that are computed in Scalar. Takes about n log n steps for n shapes.
+/// For hits that are computed in Scalar. Takes about n log n steps for n shapes, and n^2 where many quads cross one
+/// another, as in a fan around an edge.
 template <class Scalar>
 Coincidence find_coincidence(const Scene& scene);
 
