@@ -123,8 +123,8 @@ void accumulate(benchmark::State& state, const Kind& kind, Pixels pixels) {
     std::size_t count = 0;
     for (const auto& of_thread : deposits)
         for (const Deposits<float>& batch : of_thread) count += batch.count();
-    const double own_bytes =
-        static_cast<double>(accumulator->bytes()) / static_cast<double>(paper_scene().pixel_count());
+    const double own_bytes = static_cast<double>(accumulator_bytes(kind.accumulator, framebuffer, threads)) /
+                             static_cast<double>(paper_scene().pixel_count());
     count_rays(state, static_cast<std::int64_t>(count), kDepositBytes + (own_bytes > 0 ? own_bytes : kSumBytes));
 }
 
@@ -150,7 +150,7 @@ std::vector<Deposit> pool_order() {
     Recorder recorder;
     const RenderContext<float> context{
         paper_scene(), settings, kPool, random_seed(settings.seed, settings.sampler), StageRig<float>::roomy(),
-        recorder};
+        &recorder};
     InPlacePool<kPaper, float> pool(PoolSettings::kSharedCapacity, static_cast<std::size_t>(kPool.batch), 0);
     Stages<kPaper, Lanes, NoWorkCount, Splitting::Off> stages(context, pool.batch(), 0);
     const CameraPaths image(RenderUnit{0, settings.end_sample, nullptr}, paper_scene().width, paper_scene().height);

@@ -3,7 +3,7 @@
 /// Integer addition is exact and has no order, so any engine, schedule or thread count that adds the same samples makes
 /// the same bits. Not synchronised: whoever adds must own the pixel, or add atomically to sums().
 /// The step is 2^-k with k chosen so that no render can overflow: spp samples of the scene's greatest radiance fit. It
-/// is the same for all renders of up to 65,536 samples a pixel.
+/// is the same for all renders of up to 16,384 samples a pixel.
 /// On request it also keeps the sum of squares of the samples of each pixel, exact and free of order too: the second
 /// moment, from which adaptive.h estimates what error is left. It has no step of its own, so that no precision is lost
 /// whatever else is in the scene.
@@ -57,7 +57,7 @@ struct FixedPoint {
     double limit = 0;  ///< radiance above which a channel is cut: at least twice max_radiance
 
     /// Renders of up to this many samples a pixel have one step, so that one of them can be extended to any other.
-    static constexpr std::int64_t kExtensibleSamples = 65536;
+    static constexpr std::int64_t kExtensibleSamples = 16384;
 
     /// For up to `spp` samples a pixel, each channel at most max_radiance.
     static FixedPoint make(std::int64_t spp, double max_radiance);

@@ -90,8 +90,8 @@ class Trial {
 void check_thread_count(int count, const char* option) {
     constexpr int kMostThreads = 4096;
     const int limit = std::min(omp_get_thread_limit(), kMostThreads);
-    if (count > limit)
-        throw InputError(fmt::format("{}: must be at most {}{}, got {}", option, limit,
+    if (count < 1 || count > limit)
+        throw InputError(fmt::format("{}: must be within [1, {}]{}, got {}", option, limit,
                                      limit < kMostThreads ? " (OMP_THREAD_LIMIT)" : "", count));
     int error = 0;
     const int created = 1 + Trial().run(count - 1, error);

@@ -4,10 +4,10 @@
 
 namespace raypool {
 
-/// Refuses (InputError, which names `option`) more threads than OpenMP would give (OMP_THREAD_LIMIT), more than 4096,
-/// and more than the system lets this process create now with stacks as large as OpenMP's (OMP_STACKSIZE). The last is
-/// found out by creating them, for a moment: some 20 microseconds each. Call it before the first parallel region, whose
-/// threads stay and would be counted twice.
+/// Refuses (InputError, which names `option`) none, more threads than OpenMP would give (OMP_THREAD_LIMIT), more than
+/// 4096, and more than the system lets this process create now with stacks as large as OpenMP's (OMP_STACKSIZE). The
+/// last is found out by creating them, for a moment: some 20 microseconds each. Call it before the first parallel
+/// region, whose threads stay and would be counted twice.
 void check_thread_count(int count, const char* option);
 
 }  // namespace raypool

@@ -28,10 +28,9 @@ class AccumulatorBase {
     AccumulatorBase& operator=(const AccumulatorBase&) = delete;
     virtual ~AccumulatorBase() = default;
     virtual void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int thread) = 0;
+    /// 0 where it adds to the framebuffer itself.
     [[nodiscard]] virtual std::size_t block_count() const { return 0; }
     virtual void merge(std::size_t /*block*/) {}
-    /// Of sums of its own; 0 where it adds to the framebuffer.
-    [[nodiscard]] virtual std::size_t bytes() const { return 0; }
 };
 
 /// Brings everything into the framebuffer, in one thread.
@@ -144,7 +143,6 @@ class PlanarInt64 : public AccumulatorBase<Scalar> {
             for (int k = 0; k < 3; ++k)
                 Interleaved{sums_.data(), nullptr}.at(pixel, k) += std::exchange(planar_.at(pixel, k), 0);
     }
-    [[nodiscard]] std::size_t bytes() const override { return sums_.size() * sizeof(std::int64_t); }
 
   private:
     std::span<std::int64_t> sums_;
@@ -178,9 +176,6 @@ class PrivateInt64 : public AccumulatorBase<Scalar> {
             take(part.sums.data(), sums_, 3 * begin, 3 * end);
             take(part.sums.data() + sums_.size(), squares_, squares_per_pixel() * begin, squares_per_pixel() * end);
         }
-    }
-    [[nodiscard]] std::size_t bytes() const override {
-        return parts_.size() * ((sums_.size() + squares_.size()) * sizeof(std::int64_t) + block_count());
     }
 
   private:
@@ -218,12 +213,32 @@ class AtomicReal : public AccumulatorBase<Scalar> {
         for (std::size_t i = 3 * block * kBlockPixels; i < end; ++i)
             out[i] += std::llrint(static_cast<double>(std::exchange(sums_.data()[i], Sum{0})) * scale);
     }
-    [[nodiscard]] std::size_t bytes() const override { return framebuffer_.sums().size() * sizeof(Sum); }
 
   private:
     Framebuffer& framebuffer_;
     Zeros<Sum> sums_;
 };
+
+/// What the sums of an accumulator of its own take; 0 where it adds to the framebuffer itself.
+inline std::size_t accumulator_bytes(Accumulator kind, const Framebuffer& framebuffer, int threads) {
+    const std::size_t sums = framebuffer.sums().size();
+    switch (kind) {
+        case Accumulator::OwnedInt64:
+        case Accumulator::AtomicInt64:
+            return 0;
+        case Accumulator::PrivateInt64:
+            return static_cast<std::size_t>(threads) *
+                   ((sums + framebuffer.squares().size()) * sizeof(std::int64_t) + block_count_of(sums / 3));
+        case Accumulator::OwnedPlanarInt64:
+        case Accumulator::AtomicPlanarInt64:
+            return sums * sizeof(std::int64_t);
+        case Accumulator::AtomicFloat:
+            return sums * sizeof(float);
+        case Accumulator::AtomicDouble:
+            return sums * sizeof(double);
+    }
+    return 0;
+}
 
 template <class Scalar>
 std::unique_ptr<AccumulatorBase<Scalar>> make_accumulator(Accumulator kind, Framebuffer& framebuffer, int threads) {

@@ -26,10 +26,13 @@ class PoolSession : public RenderSession {
         : begin_s_(omp_get_wtime()),
           settings_(settings),
           pool_(pool),
-          accumulator_(make_accumulator<Scalar>(pool.accumulator, framebuffer, settings.threads)),
-          context_{
-              scene,        settings_, pool_, random_seed(settings.seed, settings.sampler), framebuffer.fixed_point(),
-              *accumulator_} {
+          framebuffer_(framebuffer),
+          context_{scene,
+                   settings_,
+                   pool_,
+                   random_seed(settings.seed, settings.sampler),
+                   framebuffer.fixed_point(),
+                   nullptr} {
         report_.record_bytes = record_bytes;
     }
 
@@ -46,11 +49,14 @@ class PoolSession : public RenderSession {
         return std::max<std::size_t>(static_cast<std::size_t>(pool_.capacity), std::size_t{1} << settings_.split_depth);
     }
 
-    /// Refuses `pool_bytes` for pools and stages, and what the accumulator takes, where there is not as much.
-    void check_memory(std::size_t pool_bytes) {
-        report_.pool_bytes = pool_bytes + accumulator_->bytes();
+    /// Refuses `pool_bytes` for pools and stages, and what the accumulator takes, where there is not as much; where there
+    /// is, makes the accumulator.
+    void take_memory(std::size_t pool_bytes) {
+        report_.pool_bytes = pool_bytes + accumulator_bytes(pool_.accumulator, framebuffer_, settings_.threads);
         check_available(report_.pool_bytes,
                         "--pool-rays, --threads, --accumulator: the pools, the stages' memory and the accumulator");
+        accumulator_ = make_accumulator<Scalar>(pool_.accumulator, framebuffer_, settings_.threads);
+        context_.accumulator = accumulator_.get();
     }
     /// Calls make(thread) in each thread, and ends the setup.
     template <class Make>
@@ -73,7 +79,7 @@ class PoolSession : public RenderSession {
     }
 
     RenderReport collect() final {
-        if (accumulator_->bytes() == 0) return {};  // it adds to the framebuffer itself
+        if (accumulator_->block_count() == 0) return {};  // it adds to the framebuffer itself
         return run_threads(settings_, [&](ThreadWork&, SampleAudit&) {
             const double begin = omp_get_wtime();
 #pragma omp for schedule(static) nowait
@@ -86,6 +92,7 @@ class PoolSession : public RenderSession {
     double begin_s_;
     RenderSettings settings_;
     PoolSettings pool_;
+    Framebuffer& framebuffer_;
     std::unique_ptr<AccumulatorBase<Scalar>> accumulator_;
     RenderContext<Scalar> context_;
 };

@@ -28,7 +28,7 @@ struct RenderContext {
     const PoolSettings& pool;
     RandomSeed seed;
     FixedPoint fixed;
-    AccumulatorBase<Scalar>& accumulator;
+    AccumulatorBase<Scalar>* accumulator;
 };
 
 template <SceneNeeds needs, class Real, class Work, Splitting splitting>
@@ -161,7 +161,7 @@ class Stages {
 
     /// Adds the deposits to the framebuffer.
     void accumulate() {
-        context_.accumulator.add(deposits_, converter_, thread_);
+        context_.accumulator->add(deposits_, converter_, thread_);
         deposits_.clear();
     }
 

@@ -41,7 +41,7 @@ TEST(FixedPoint, HasOneStepForAllRendersThatCanBeExtendedToOneAnother) {
 
 TEST(FixedPoint, HoldsTheSquaresOfAllSamplesOfAnyRadianceExactly) {
     constexpr Int128 kMost = std::numeric_limits<std::int64_t>::max();
-    for (const std::int64_t spp : {1L, 2L, 100L, 65536L, 65537L, 1'000'000L, 1L << 31U}) {
+    for (const std::int64_t spp : {1L, 2L, 100L, 16384L, 16385L, 1'000'000L, 1L << 31U}) {
         for (const double radiance : {1e-6, 0.3, 1.0, 7.0, 1e6}) {
             const FixedPoint fixed = FixedPoint::make(spp, radiance);
             SampleConverter converter(fixed);

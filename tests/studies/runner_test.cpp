@@ -200,9 +200,10 @@ TEST(StudyRunner, LeavesNoPartOfARepeatOnAFullDisk) {
         const rlimit limit{before.size() + 15, before.size() + 15};  // the first of two rows has 13 bytes
         ::setrlimit(RLIMIT_FSIZE, &limit);
         try {
-            const std::vector<Case> cases = Fake().cases({});
+            const Fake study;  // the cases run in it
+            const std::vector<Case> cases = study.cases({});
             std::vector<Column> columns{{"case", ColumnType::Text, ""}, {"repeat", ColumnType::Count, ""}};
-            for (const Column& column : Fake().columns()) columns.push_back(column);
+            for (const Column& column : study.columns()) columns.push_back(column);
             RunData data(folder.path(), columns, cases);
             data.load();
             data.open();

@@ -154,8 +154,8 @@ TEST(Layouts, KeepEverySumOfEveryPixelInAPlaceOfItsOwn) {
 }
 
 TEST(Accumulators, SayHowMuchMemoryTheyTakeBesideTheFramebuffer) {
-    Framebuffer out = framebuffer();
-    const auto bytes = [&](Accumulator kind) { return make_accumulator<float>(kind, out, kThreads)->bytes(); };
+    const Framebuffer out = framebuffer();
+    const auto bytes = [&](Accumulator kind) { return accumulator_bytes(kind, out, kThreads); };
     EXPECT_EQ(bytes(Accumulator::OwnedInt64), 0U);
     EXPECT_EQ(bytes(Accumulator::AtomicInt64), 0U);
     EXPECT_EQ(bytes(Accumulator::PrivateInt64),
