@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -32,9 +34,30 @@ void print_tree(const char* what, const Tree& tree) {
           100.0 * static_cast<double>(filled_lanes(tree.blocks)) / static_cast<double>(lanes));
 }
 
+/// "quad 2": the third of its kind in the scene file.
+std::string place_of(const Scene& scene, std::size_t id) {
+    if (id < scene.spheres.size()) return fmt::format("sphere {}", id);
+    id -= scene.spheres.size();
+    if (id < scene.quads.size()) return fmt::format("quad {}", id);
+    return fmt::format("plane {}", id - scene.quads.size());
+}
+
+/// Shapes that no ray meets, since one listed before covers them: more likely a mistake than meant.
+void print_hidden(const Scene& scene, const std::vector<bool>& is_hidden) {
+    constexpr std::ptrdiff_t kMostNamed = 5;
+    std::vector<std::string> named;
+    const auto count = std::count(is_hidden.begin(), is_hidden.end(), true);
+    for (std::size_t id = 0; id < is_hidden.size() && std::ssize(named) < kMostNamed; ++id)
+        if (is_hidden[id]) named.push_back(place_of(scene, id));
+    if (count > 0)
+        print("hidden: {} shapes that lie on one listed before: {}{}\n", count, fmt::join(named, ", "),
+              count > kMostNamed ? ", ..." : "");
+}
+
 void info(const std::string& name) {
     const Scene scene = load_scene(name);
-    const CompiledScene<float> compiled = compile<float>(scene);
+    const Coincidence coincidence = find_coincidence<float>(scene);
+    const CompiledScene<float> compiled = compile<float>(scene, coincidence);
     const auto listed = [](const SceneNeeds& needs) {
         const auto names = feature_names(needs);
         return names.empty() ? std::string("nothing") : fmt::format("{}", fmt::join(names, ", "));
@@ -43,6 +66,7 @@ void info(const std::string& name) {
     print("image: {} x {}\n", scene.width, scene.height);
     print("shapes: {} spheres, {} quads, {} planes; {} materials, {} textures\n", scene.spheres.size(),
           scene.quads.size(), scene.planes.size(), scene.materials.size(), scene.textures.size());
+    print_hidden(scene, coincidence.is_hidden);
     print("needs: {}\n", listed(compiled.needs));
     print("runs on code compiled for: {}\n", listed(kCompiledNeeds[compiled_needs_index(compiled.needs)]));
     const CodeWidths widths = code_widths();

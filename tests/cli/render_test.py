@@ -523,6 +523,15 @@ class Info(CommandTest):
         self.assertRegex(text, r"\bsphere tree: \d+ nodes \d+ wide, \d+ levels, \d+ leaves holding \d+ ")
         self.assertRegex(self.run_well("info", "scene.json").stdout, r"1 spheres, 1 quads, 1 planes")
 
+    def test_info_names_shapes_that_no_ray_meets(self):
+        self.assertNotIn("hidden", self.run_well("info", "scene.json").stdout)
+        shapes = SCENE["shapes"] + [SCENE["shapes"][0]] * 2 + [SCENE["shapes"][2]]
+        self.write("twice.json", changed(SCENE, "/shapes", shapes))
+        self.assertIn("hidden: 3 shapes that lie on one listed before: sphere 1, sphere 2, quad 1\n",
+                      self.run_well("info", "twice.json").stdout)
+        self.write("often.json", changed(SCENE, "/shapes", SCENE["shapes"] * 3))
+        self.assertRegex(self.run_well("info", "often.json").stdout, r"hidden: 6 shapes .*, \.\.\.\n")
+
 
 if __name__ == "__main__":
     main()
