@@ -42,7 +42,7 @@ std::string place_of(const Scene& scene, std::size_t id) {
     return fmt::format("plane {}", id - scene.quads.size());
 }
 
-/// Shapes that no ray meets, since one listed before covers them: more likely a mistake than meant.
+/// Shapes that no ray meets, since a single one listed before covers them: more likely a mistake than meant.
 void print_hidden(const Scene& scene, const std::vector<bool>& is_hidden) {
     constexpr std::ptrdiff_t kMostNamed = 5;
     std::vector<std::string> named;
@@ -50,7 +50,7 @@ void print_hidden(const Scene& scene, const std::vector<bool>& is_hidden) {
     for (std::size_t id = 0; id < is_hidden.size() && std::ssize(named) < kMostNamed; ++id)
         if (is_hidden[id]) named.push_back(place_of(scene, id));
     if (count > 0)
-        print("hidden: {} shapes that lie on one listed before: {}{}\n", count, fmt::join(named, ", "),
+        print("hidden in float: {} shapes, each by one listed before: {}{}\n", count, fmt::join(named, ", "),
               count > kMostNamed ? ", ..." : "");
 }
 

@@ -6,6 +6,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -21,6 +22,11 @@
 
 namespace {
 
+/// Commands that render for long, and that tasks cannot share as they can a render.
+bool is_long(std::string_view command) {
+    return command == "compare" || command == "advise" || command == "study";
+}
+
 int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
     const auto fail = [&](int status, const std::string& text) {
         return raypool::cluster::fail(ranks, status, raypool::printable(text));
@@ -28,6 +34,9 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
     try {
         if (ranks.count() > 1 && (argc < 2 || std::strcmp(argv[1], "render") != 0))
             return fail(2, "several ranks can only run the command render");
+        if (ranks.separate_count() > 1 && argc > 1 && is_long(argv[1]))
+            return fail(2, fmt::format("{} tasks were started, and each would run {} for itself (SLURM_STEP_NUM_TASKS)",
+                                       ranks.separate_count(), argv[1]));
         CLI::App app("Ray pools against recursion on a CPU: one image, two orders of work, measured.", "raypool");
         app.require_subcommand(0, 1);  // a wrong command is then named as an argument that was not expected
         app.set_version_flag("--version", RAYPOOL_VERSION);

@@ -9,6 +9,7 @@
 
 #include "core/quad_index.h"
 #include "core/shape_bounds.h"
+#include "core/shapes.h"
 
 namespace raypool {
 
@@ -244,6 +245,35 @@ class Finder {
         }
         if (members.size() == 1) return;
         for (const std::uint32_t member : members) share(member, nearest, plane.normal, plane.group);
+        hide_covered(members);
+    }
+
+    /// Of quads in one plane, those that a single one listed before covers.
+    void hide_covered(const std::vector<std::uint32_t>& members) {
+        std::vector<Box> boxes;
+        boxes.reserve(members.size());
+        for (const std::uint32_t member : members) boxes.push_back(quad_box<Scalar>(scene_.quads[member]));
+        QuadIndex quads(std::move(boxes));
+        for (std::uint32_t i = 0; i < members.size(); ++i) {
+            const std::uint32_t quad = members[i];
+            quads.for_each_near(quads.box(i), out_.flats[quad].point, out_.flats[quad].normal, [&](std::uint32_t k) {
+                if (members[k] < quad && covers(scene_.quads[members[k]], scene_.quads[quad]))
+                    out_.is_hidden[id(quad)] = true;
+            });
+        }
+    }
+
+    /// Whether the corners of `under` are on `cover`, whose plane it lies in.
+    [[nodiscard]] static bool covers(const Quad& cover, const Quad& under) {
+        const FlatShape flat = flat_shape(cover);
+        bool is_covered = true;
+        for_each_corner(under, [&](const Vector3d& x) {
+            for (const Vector3d& dual : {flat.dual_u, flat.dual_v}) {
+                const double at = dual.dot(x - flat.corner);
+                is_covered = is_covered && at >= -kEdgeSlack<Scalar> && at <= 1 + kEdgeSlack<Scalar>;
+            }
+        });
+        return is_covered;
     }
 
     [[nodiscard]] std::size_t id(std::size_t flat) const { return scene_.spheres.size() + flat; }

@@ -9,23 +9,21 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/text.h"
 
 namespace raypool {
 namespace {
 
 using nlohmann::json;
 
-/// Whatever the input held, the message stays one printable line of bearable length.
+/// Whatever the input held, the message stays one line of bearable length.
 [[noreturn]] void throw_one_line(std::string message) {
     constexpr std::size_t kLongest = 1000;
     if (message.size() > kLongest) {
         message.resize(kLongest);
         message += "...";
     }
-    for (char& c : message) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    }
-    throw InputError(message);
+    throw InputError(printable(message));
 }
 
 /// Builds the document while it is parsed, since only then are duplicate keys and too deep nesting visible.

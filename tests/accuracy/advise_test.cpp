@@ -48,7 +48,9 @@ TEST_P(AdvisePromise, IsKeptInNineOfTenFreshRunsAtThreeTargets) {
         }
         const std::string text = to_string(best.pilot.configuration);
         EXPECT_GE(kept, 9) << text << ", " << best.spp << " spp for " << error;
-        EXPECT_GT(std::sqrt(mean_square), 0.5 * error) << "and not by waste: " << text << ", " << best.spp << " spp";
+        // Sobol points come in powers of two, so up to twice as many as are needed.
+        const double least = best.pilot.configuration.sampler == Sampler::Sobol ? 0.5 / std::sqrt(2) : 0.5;
+        EXPECT_GT(std::sqrt(mean_square), least * error) << "and not by waste: " << text << ", " << best.spp << " spp";
         EXPECT_GE(std::sqrt(mean_square), 0.9 * best.error_interval.low) << text;
         EXPECT_LE(std::sqrt(mean_square), 1.1 * best.error_interval.high) << text;
     }

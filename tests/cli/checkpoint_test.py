@@ -242,6 +242,8 @@ class CheckpointTest(CommandTest):
         self.assert_refused("render", "scene.json", "-o", "a.png", named=["4 tasks", "--samples", "mpi"], environment=slurm)
         self.run_well("render", "scene.json", "--samples", "0:1", environment=slurm)
         self.run_well("info", "scene.json", environment=slurm)
+        for command in (("compare", "scene.json"), ("advise", "scene.json", "--target-error", 1), ("study", "load")):
+            self.assert_refused(*command, named=["4 tasks", command[0]], environment=slurm)
         self.run_well("render", "scene.json", environment={**slurm, "SLURM_STEP_NUM_TASKS": "1"})
         self.run_well("render", "scene.json", environment={"SLURM_NTASKS": "4"})  # a batch script runs once
 

@@ -360,6 +360,23 @@ TEST(CoincidentShapes, AreNotMovedByMoreThanTheirOwnRounding) {
     }
 }
 
+TYPED_TEST(Coincident, QuadsAreHiddenByAnEarlierOneThatCoversThem) {
+    RandomInputs random(31);
+    for (int round = 0; round < 200; ++round) {
+        const Frame f = random_frame(random, round % 2 == 0 ? 1 : 1e3);
+        const Quad ceiling = quad_of(f.at - f.u - f.v, 2 * f.u, 2 * f.v);
+        const Quad lamp = quad_of(f.at - 0.3 * f.u + 0.2 * f.v, 0.4 * f.v, -0.5 * f.u);
+        const Quad beyond = quad_of(f.at, 2 * f.u, 0.5 * f.v);
+        Scene scene;
+        scene.quads = {beyond, ceiling, lamp, quad_of(f.at + f.u + f.v, -2 * f.v, -2 * f.u), beyond};
+        EXPECT_EQ(find_coincidence<TypeParam>(scene).is_hidden, (std::vector<bool>{false, false, true, true, true}));
+        scene.quads = {lamp, ceiling};
+        EXPECT_EQ(find_coincidence<TypeParam>(scene).is_hidden, std::vector<bool>(2)) << "the smaller one is first";
+        scene.quads = {quad_of(f.at - f.u - f.v, f.u, 2 * f.v), quad_of(f.at - f.v, f.u, 2 * f.v), lamp};
+        EXPECT_EQ(find_coincidence<TypeParam>(scene).is_hidden, std::vector<bool>(3)) << "no single one covers the lamp";
+    }
+}
+
 TEST(CoincidentShapes, KeepTheirOwnOutwardSides) {
     TestScene scene(8, 8, Vector3d::Ones());
     scene.diffuse(0.8);
