@@ -372,7 +372,8 @@ TYPED_TEST(Coincident, QuadsAreHiddenByAnEarlierOneThatCoversThem) {
         EXPECT_EQ(find_coincidence<TypeParam>(scene).is_hidden, (std::vector<bool>{false, false, true, true, true}));
         scene.quads = {lamp, ceiling};
         EXPECT_EQ(find_coincidence<TypeParam>(scene).is_hidden, std::vector<bool>(2)) << "the smaller one is first";
-        scene.quads = {quad_of(f.at - f.u - f.v, f.u, 2 * f.v), quad_of(f.at - f.v, f.u, 2 * f.v), lamp};
+        const Quad across = quad_of(f.at - 0.2 * f.u - 0.2 * f.v, 0.4 * f.u, 0.4 * f.v);
+        scene.quads = {quad_of(f.at - f.u - f.v, f.u, 2 * f.v), quad_of(f.at - f.v, f.u, 2 * f.v), across};
         EXPECT_EQ(find_coincidence<TypeParam>(scene).is_hidden, std::vector<bool>(3)) << "no single one covers the lamp";
     }
 }
