@@ -173,18 +173,14 @@ class Compiler {
             ++large;
 
         const Ids large_ids(by_area.begin(), by_area.begin() + static_cast<std::ptrdiff_t>(large));
-        if (large > 0) out_.large_spheres.push_back(sphere_block<kWidth>(large_ids));
+        if (large > 0) out_.large_spheres.push_back(sphere_block(large_ids));
 
         Ids ids(by_area.begin() + static_cast<std::ptrdiff_t>(large), by_area.end());
         std::sort(ids.begin(), ids.end());
         std::vector<Box> boxes;
         for (const std::uint32_t id : ids) boxes.push_back(box[id]);
-        const auto make_tree = [&]<int width>() {
-            return block_tree<SphereBlock<Scalar, width>, width>(
-                boxes, ids, [&](const Ids& in_leaf) { return sphere_block<width>(in_leaf); });
-        };
-        out_.sphere_tree = make_tree.template operator()<kWidth>();
-        out_.sphere_stream_tree = make_tree.template operator()<kStreamTreeWidth>();
+        out_.sphere_tree =
+            block_tree<SphereBlock<Scalar, kWidth>>(boxes, ids, [&](const Ids& in_leaf) { return sphere_block(in_leaf); });
     }
 
     void add_flats() {
@@ -195,20 +191,16 @@ class Compiler {
         };
         std::vector<Box> boxes;
         for (const std::uint32_t id : ids) boxes.push_back(box_of(id));
-        const auto make_tree = [&]<int width>() {
-            return block_tree<FlatBlock<Scalar, width>, width>(boxes, ids, [&](const Ids& in_leaf) {
-                std::vector<Box> leaf_boxes;
-                for (const std::uint32_t id : in_leaf) leaf_boxes.push_back(box_of(id));
-                return flat_block<width>(in_leaf, leaf_boxes);
-            });
-        };
-        out_.quad_tree = make_tree.template operator()<kWidth>();
-        out_.quad_stream_tree = make_tree.template operator()<kStreamTreeWidth>();
+        out_.quad_tree = block_tree<FlatBlock<Scalar, kWidth>>(boxes, ids, [&](const Ids& in_leaf) {
+            std::vector<Box> leaf_boxes;
+            for (const std::uint32_t id : in_leaf) leaf_boxes.push_back(box_of(id));
+            return flat_block(in_leaf, leaf_boxes);
+        });
         const Ids planes = shown_ids(first_plane, first_plane + scene_.planes.size());
         for (std::size_t i = 0; i < planes.size(); i += kWidth) {
             const Ids block(planes.begin() + static_cast<std::ptrdiff_t>(i),
                             planes.begin() + static_cast<std::ptrdiff_t>(std::min(i + kWidth, planes.size())));
-            out_.planes.push_back(flat_block<kWidth>(block, std::vector<Box>(block.size())));
+            out_.planes.push_back(flat_block(block, std::vector<Box>(block.size())));
         }
     }
 
@@ -220,11 +212,10 @@ class Compiler {
         return ids;
     }
 
-    template <int width>
-    SphereBlock<Scalar, width> sphere_block(const Ids& ids) const {
-        SphereBlock<Scalar, width> block{};
-        std::fill_n(block.radius, width, std::numeric_limits<Scalar>::quiet_NaN());
-        std::fill_n(block.id, width, kNoPrimitive);
+    SphereBlock<Scalar, kWidth> sphere_block(const Ids& ids) const {
+        SphereBlock<Scalar, kWidth> block{};
+        std::fill_n(block.radius, kWidth, std::numeric_limits<Scalar>::quiet_NaN());
+        std::fill_n(block.id, kWidth, kNoPrimitive);
         for (std::size_t lane = 0; lane < ids.size(); ++lane) {
             using Row = SurfaceRow<Scalar>;
             const Row& row = out_.surfaces[ids[lane]];
@@ -239,11 +230,10 @@ class Compiler {
         return block;
     }
 
-    template <int width>
-    FlatBlock<Scalar, width> flat_block(const Ids& ids, const std::vector<Box>& boxes) const {
-        FlatBlock<Scalar, width> block{};
-        for (auto& component : block.normal) std::fill_n(component, width, std::numeric_limits<Scalar>::quiet_NaN());
-        std::fill_n(block.id, width, kNoPrimitive);
+    FlatBlock<Scalar, kWidth> flat_block(const Ids& ids, const std::vector<Box>& boxes) const {
+        FlatBlock<Scalar, kWidth> block{};
+        for (auto& component : block.normal) std::fill_n(component, kWidth, std::numeric_limits<Scalar>::quiet_NaN());
+        std::fill_n(block.id, kWidth, kNoPrimitive);
         for (std::size_t lane = 0; lane < ids.size(); ++lane) {
             const SurfaceRow<Scalar>& surface = out_.surfaces[ids[lane]];
             const FlatRow<Scalar>& flat = out_.flats[ids[lane] - scene_.spheres.size()];
@@ -262,11 +252,11 @@ class Compiler {
         return block;
     }
 
-    template <class Block, int width, class MakeBlock>
-    BlockTree<Block, Scalar, width> block_tree(const std::vector<Box>& boxes, const Ids& ids,
-                                               MakeBlock make_block) const {
-        WideBvh<Scalar, width> bvh = collapse<Scalar, width>(build_binary_bvh(boxes, width));
-        BlockTree<Block, Scalar, width> tree;
+    template <class Block, class MakeBlock>
+    BlockTree<Block, Scalar, kWidth> block_tree(const std::vector<Box>& boxes, const Ids& ids,
+                                                MakeBlock make_block) const {
+        WideBvh<Scalar, kWidth> bvh = collapse<Scalar, kWidth>(build_binary_bvh(boxes, kWidth));
+        BlockTree<Block, Scalar, kWidth> tree;
         for (const auto& leaf : bvh.leaves) {
             Ids in_leaf;
             for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) in_leaf.push_back(ids[bvh.order[i]]);

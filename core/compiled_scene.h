@@ -83,13 +83,10 @@ struct BlockTree {
     int depth = 0;
 };
 
-/// Children of a node, and primitives of a leaf, in the tree that single rays walk: as many as fill a register, eight
-/// where there is a choice.
+/// Children of a node, and primitives of a leaf: as many as fill a register, eight where there is a choice. Single rays
+/// test them all at once, streams and packets one by one against a register of rays.
 template <class Scalar>
 inline constexpr int kTreeWidth = sizeof(Scalar) == 4 ? 8 : Wide<double, stdx::native_simd<double>::size()>::size();
-
-/// The same for the tree that streams and packets of rays walk.
-inline constexpr int kStreamTreeWidth = 4;
 
 template <class Scalar>
 struct Sky {
@@ -99,10 +96,7 @@ struct Sky {
 
 template <class Scalar>
 struct CompiledScene {
-    template <int width>
-    using SphereTree = BlockTree<SphereBlock<Scalar, width>, Scalar, width>;
-    template <int width>
-    using QuadTree = BlockTree<FlatBlock<Scalar, width>, Scalar, width>;
+    static constexpr int kWidth = kTreeWidth<Scalar>;
 
     SceneNeeds needs;
     std::int64_t width = 0;  ///< of the image, in pixels
@@ -119,14 +113,10 @@ struct CompiledScene {
     std::vector<Scalar> texels;
 
     /// Spheres that span the scene, and planes: every ray tests them, before the trees.
-    std::vector<SphereBlock<Scalar, kTreeWidth<Scalar>>> large_spheres;
-    std::vector<FlatBlock<Scalar, kTreeWidth<Scalar>>> planes;
-    /// For one ray against a register of boxes or shapes.
-    SphereTree<kTreeWidth<Scalar>> sphere_tree;
-    QuadTree<kTreeWidth<Scalar>> quad_tree;
-    /// For a register of rays against one box or shape.
-    SphereTree<kStreamTreeWidth> sphere_stream_tree;
-    QuadTree<kStreamTreeWidth> quad_stream_tree;
+    std::vector<SphereBlock<Scalar, kWidth>> large_spheres;
+    std::vector<FlatBlock<Scalar, kWidth>> planes;
+    BlockTree<SphereBlock<Scalar, kWidth>, Scalar, kWidth> sphere_tree;
+    BlockTree<FlatBlock<Scalar, kWidth>, Scalar, kWidth> quad_tree;
 
     /// Radiance that a limit of depth cuts off a pixel, on average over its paths: at most this in any channel.
     [[nodiscard]] double truncation_bound(std::int32_t depth) const {
@@ -152,8 +142,6 @@ struct CompiledScene {
         };
         visit_tree(self.sphere_tree);
         visit_tree(self.quad_tree);
-        visit_tree(self.sphere_stream_tree);
-        visit_tree(self.quad_stream_tree);
     }
 };
 

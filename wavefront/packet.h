@@ -12,7 +12,7 @@ RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, co
                                 Hit<Real>& hit, Work& work) {
     if (tree.nodes.empty()) return;
     using S = ScalarOf<Real>;
-    constexpr int kWidth = kStreamTreeWidth;
+    constexpr int kWidth = kTreeWidth<S>;
     struct Entry {
         S enter;  ///< of the first ray that meets it: only an order to visit in
         std::int32_t child;
@@ -54,8 +54,8 @@ RAYPOOL_INLINE Hit<Real> closest_hits(const CompiledScene<ScalarOf<Real>>& scene
                                       const Mask<Real>& is_active, Work& work) {
     Hit<Real> hit;
     intersect_large<needs, Real>(scene, rays, std::popcount(mask_bits(is_active)), hit, work);
-    if constexpr (needs.flat) detail::walk_packet<needs, Real>(scene.quad_stream_tree, rays, is_active, hit, work);
-    detail::walk_packet<needs, Real>(scene.sphere_stream_tree, rays, is_active, hit, work);
+    if constexpr (needs.flat) detail::walk_packet<needs, Real>(scene.quad_tree, rays, is_active, hit, work);
+    detail::walk_packet<needs, Real>(scene.sphere_tree, rays, is_active, hit, work);
     return hit;
 }
 

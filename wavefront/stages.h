@@ -227,7 +227,7 @@ class Stages {
     static constexpr std::size_t kMostDeposits = 1024;  ///< kept back in the fused camera stage; fits into the L1 cache
 
     static int tree_depth(const RenderContext<Scalar>& context) {
-        return std::max(context.scene.sphere_stream_tree.depth, context.scene.quad_stream_tree.depth);
+        return std::max(context.scene.sphere_tree.depth, context.scene.quad_tree.depth);
     }
 
     RAYPOOL_INLINE RayRecord<Real> camera_record(const CameraLanes<Real>& lanes) const {
@@ -337,8 +337,8 @@ class Stages {
                 store_row(i, rays, hit);
             }
             if constexpr (needs.flat)
-                detail::walk_stream<needs, Real>(context_.scene.quad_stream_tree, stream_, count, work_);
-            detail::walk_stream<needs, Real>(context_.scene.sphere_stream_tree, stream_, count, work_);
+                detail::walk_stream<needs, Real>(context_.scene.quad_tree, stream_, count, work_);
+            detail::walk_stream<needs, Real>(context_.scene.sphere_tree, stream_, count, work_);
         }
     }
 

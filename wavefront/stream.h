@@ -29,10 +29,10 @@ class RayStream {
         : rows_(capacity + kLanesMost),
           distance_(capacity + kLanesMost),
           primitive_id_(capacity + kLanesMost),
-          lists_((capacity + kLanesMost) * (1 + kStreamTreeWidth * static_cast<std::size_t>(tree_depth))) {}
+          lists_((capacity + kLanesMost) * (1 + kTreeWidth<Scalar> * static_cast<std::size_t>(tree_depth))) {}
 
     static std::size_t bytes(std::size_t capacity, int tree_depth) {
-        const std::size_t lists = 1 + kStreamTreeWidth * static_cast<std::size_t>(tree_depth);
+        const std::size_t lists = 1 + kTreeWidth<Scalar> * static_cast<std::size_t>(tree_depth);
         return (capacity + kLanesMost) *
                (sizeof(RayRow<Scalar>) + sizeof(Scalar) + sizeof(std::uint32_t) * (1 + lists));
     }
@@ -57,7 +57,7 @@ class StreamWalk {
     using S = ScalarOf<Real>;
     using Row = RayRow<S>;
     static constexpr int kRays = kLanes<Real>;
-    static constexpr int kWidth = kStreamTreeWidth;
+    static constexpr int kWidth = kTreeWidth<S>;
     static constexpr std::int32_t kLargestId = std::numeric_limits<std::int32_t>::max();
 
   public:

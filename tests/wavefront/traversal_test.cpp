@@ -174,12 +174,12 @@ void trace_stream(const CompiledScene<ScalarOf<Real>>& scene, const std::vector<
             stream.primitive_id()[at] = static_cast<std::int32_t>(lane(hit.primitive_id, i));
         }
     }
-    detail::walk_stream<kEverything, Real>(scene.quad_stream_tree, stream, rays.size(), work);
-    detail::walk_stream<kEverything, Real>(scene.sphere_stream_tree, stream, rays.size(), work);
+    detail::walk_stream<kEverything, Real>(scene.quad_tree, stream, rays.size(), work);
+    detail::walk_stream<kEverything, Real>(scene.sphere_tree, stream, rays.size(), work);
 }
 
 int tree_depth(const auto& scene) {
-    return std::max(scene.sphere_stream_tree.depth, scene.quad_stream_tree.depth);
+    return std::max(scene.sphere_tree.depth, scene.quad_tree.depth);
 }
 
 template <class Scalar>
