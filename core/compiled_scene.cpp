@@ -62,6 +62,10 @@ class Compiler {
         const std::size_t count = scene_.spheres.size() + scene_.quads.size() + scene_.planes.size();
         if (count > kMostBoxes)
             throw InputError(fmt::format("scene of {} shapes: must have at most {}", count, kMostBoxes));
+        constexpr std::size_t kMostTextures = SurfaceCode<int>::kMostTextures;
+        if (scene_.textures.size() > kMostTextures)
+            throw InputError(
+                fmt::format("scene of {} textures: must have at most {}", scene_.textures.size(), kMostTextures));
     }
 
     void add_textures() {
@@ -102,7 +106,10 @@ class Compiler {
         using Row = SurfaceRow<Scalar>;
         const Material& material = scene_.materials[material_id];
         Row row{};
-        row.value[Row::kMaterial] = static_cast<Scalar>(material.kind);
+        const auto set_code = [&](int texture, int texture_row) {
+            row.value[Row::kCode] = Scalar(SurfaceCode<int>::make(static_cast<int>(material.kind), texture, texture_row));
+        };
+        set_code(0, 0);
         if (material.kind == Material::Kind::Dielectric) {
             row.value[Row::kParameter] = static_cast<Scalar>(material.ior);
             out_.max_albedo = 1;
@@ -111,9 +118,8 @@ class Compiler {
         const Texture& texture = scene_.textures[material.texture_id];
         row.value[Row::kParameter] = static_cast<Scalar>(material.fuzz);
         for (int i = 0; i < 3; ++i) row.value[Row::kColour + i] = static_cast<Scalar>(texture.even[i]);
-        row.value[Row::kTexture] = static_cast<Scalar>(texture.kind);
-        if (texture.image) row.value[Row::kTexture] += Scalar(image_repeat(texture.wrap, shape).number());
-        row.value[Row::kTextureRow] = static_cast<Scalar>(material.texture_id);
+        const int repeat = texture.image ? image_repeat(texture.wrap, shape).number() : 0;
+        set_code(static_cast<int>(texture.kind) + repeat, material.texture_id);
         const double brightest = texture.image ? 1 : std::max(texture.even.maxCoeff(), texture.odd.maxCoeff());
         double& most = material.kind == Material::Kind::Emissive ? out_.max_radiance : out_.max_albedo;
         most = std::max(most, brightest);
@@ -129,7 +135,6 @@ class Compiler {
                 row.value[Row::kMotion + i] = static_cast<Scalar>(sphere.center1[i] - sphere.center0[i]);
             }
             row.value[Row::kRadius] = static_cast<Scalar>(sphere.radius);
-            row.value[Row::kGroup] = static_cast<Scalar>(out_.surfaces.size());
             out_.surfaces.push_back(row);
         }
         for (const Quad& quad : scene_.quads) add_flat_surface(flat_shape(quad), Shape::Quad);
@@ -140,7 +145,7 @@ class Compiler {
         SurfaceRow<Scalar> surface = surface_row(shape.material_id, kind);
         FlatRow<Scalar> flat{};
         const Coincidence::Flat& met = coincidence_.flats[out_.flats.size()];
-        surface.value[SurfaceRow<Scalar>::kGroup] = static_cast<Scalar>(met.group);
+        surface.value[SurfaceRow<Scalar>::kRadius] = flat_mark(static_cast<Scalar>(met.group));
         for (int i = 0; i < 3; ++i) {
             surface.value[SurfaceRow<Scalar>::kCenter + i] = static_cast<Scalar>(met.normal[i]);
             surface.value[SurfaceRow<Scalar>::kMotion + i] = static_cast<Scalar>(met.point[i]);
@@ -148,7 +153,6 @@ class Compiler {
             flat.value[FlatRow<Scalar>::kDualU + i] = static_cast<Scalar>(shape.dual_u[i]);
             flat.value[FlatRow<Scalar>::kDualV + i] = static_cast<Scalar>(shape.dual_v[i]);
         }
-        surface.value[SurfaceRow<Scalar>::kFlatRow] = static_cast<Scalar>(out_.flats.size());
         out_.surfaces.push_back(surface);
         out_.flats.push_back(flat);
     }
@@ -246,7 +250,7 @@ class Compiler {
                 block.low[i][lane] = static_cast<Scalar>(boxes[lane].low[i]);
                 block.high[i][lane] = static_cast<Scalar>(boxes[lane].high[i]);
             }
-            block.group[lane] = static_cast<std::int32_t>(surface.value[SurfaceRow<Scalar>::kGroup]);
+            block.group[lane] = static_cast<std::int32_t>(flat_mark(surface.value[SurfaceRow<Scalar>::kRadius]));
             block.id[lane] = static_cast<std::int32_t>(ids[lane]);
         }
         return block;

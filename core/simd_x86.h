@@ -232,6 +232,25 @@ RAYPOOL_INLINE void store_transposed(const __m512 (&column)[4], float* rows, int
 }
 #endif
 
+/// Rounds values[i] * scale of eight floats, in double, to the nearest integers. False, and nothing is done, where one
+/// of the values is not within [0, limit].
+#ifdef __AVX512DQ__
+RAYPOOL_INLINE bool round_eight(const float* values, double scale, double limit, std::int64_t* rounded) {
+    const __m512d value = _mm512_cvtps_pd(_mm256_loadu_ps(values));
+    const __mmask8 is_good = _mm512_mask_cmp_pd_mask(_mm512_cmp_pd_mask(value, _mm512_setzero_pd(), _CMP_GE_OQ), value,
+                                                     _mm512_set1_pd(limit), _CMP_LE_OQ);
+    if (is_good != 0xff) return false;
+    _mm512_storeu_si512(rounded, _mm512_cvtpd_epi64(_mm512_mul_pd(value, _mm512_set1_pd(scale))));
+    return true;
+}
+inline constexpr bool kRoundsEight = true;
+#else
+inline bool round_eight(const float*, double, double, std::int64_t*) {
+    return false;
+}
+inline constexpr bool kRoundsEight = false;
+#endif
+
 /// The lanes whose bit is set in `mask`, moved to the front; what follows them is unspecified.
 #ifdef __AVX512VL__
 RAYPOOL_INLINE __m512i compress32(__m512i v, unsigned mask) {

@@ -199,7 +199,7 @@ RAYPOOL_INLINE void walk(const BlockTree<Block, ScalarOf<Real>, kLanes<Real>>& t
 
 }  // namespace detail
 
-/// `leaving_id` is what the ray starts on (SurfaceRow::kGroup of the primitive), or kNoPrimitive.
+/// `leaving_id` is what the ray starts on (Scattered::leaving_id), or kNoPrimitive.
 template <SceneNeeds needs, class Scalar, class Work>
 [[gnu::noinline]] Hit<Scalar> closest_hit(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray,
                                           std::int32_t leaving_id, Work& work) {

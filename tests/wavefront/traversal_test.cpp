@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/random_inputs.h"
-#include "wavefront/packet.h"
+#include "wavefront/beam.h"
 #include "wavefront/stream.h"
 
 namespace raypool::wavefront {
@@ -244,6 +244,44 @@ TYPED_TEST(RaysTogether, HitInPacketsWhatEachHitsAlone) {
 }
 TYPED_TEST(RaysTogether, HitInPacketsOfOneWhatEachHitsAlone) {
     expect_packets_hit_what_single_rays_hit<TypeParam>();
+}
+
+/// Beams of camera rays: from a lens, in directions that differ little or, now and then, much.
+TYPED_TEST(RaysTogether, HitInBeamsWhatEachHitsAlone) {
+    using Real = Native<TypeParam>;
+    int coherent = 0;
+    for (const TestScene& test : kScenes) {
+        const auto scene = compile<TypeParam>(test.make());
+        RandomInputs random(7);
+        for (int round = 0; round < 300; ++round) {
+            const int count = 1 + random.below(kBeamRays);
+            auto rays = random_rays(scene, static_cast<std::size_t>(count), random);
+            const double spread = round % 10 == 0 ? 2 : std::abs(random.magnitude<double>(-12, -1));
+            const double lens = round % 2 == 0 ? 0 : 0.1 * spread;
+            for (int i = 1; i < count; ++i) {
+                auto& [ray, leaving_id] = rays[static_cast<std::size_t>(i)];
+                ray.origin = rays[0].ray.origin + static_cast<TypeParam>(lens) * random.direction<TypeParam>();
+                ray.direction = unit<TypeParam>(rays[0].ray.direction +
+                                                static_cast<TypeParam>(spread) * random.direction<TypeParam>());
+            }
+            const int packets = (count + kLanes<Real> - 1) / kLanes<Real>;
+            WideRays<Real> wide[kBeamPackets<Real>];
+            Hit<Real> hit[kBeamPackets<Real>];
+            for (auto& start : rays) start.leaving_id = kNoPrimitive;
+            for (int p = 0; p < packets; ++p) wide[p] = gather<Real>(rays, static_cast<std::size_t>(p * kLanes<Real>));
+            using Boxes = Wide<TypeParam, kTreeWidth<TypeParam>>;
+            coherent += detail::Beam<Boxes>(wide, packets).is_coherent() ? 1 : 0;
+            NoWorkCount work;
+            closest_hits<kEverything, Real>(scene, wide, hit, packets, count, work);
+            for (int i = 0; i < count; ++i) {
+                const auto expected = single_hit(scene, rays[static_cast<std::size_t>(i)]);
+                const Hit<Real>& got = hit[i / kLanes<Real>];
+                ASSERT_EQ(lane(got.primitive_id, i % kLanes<Real>), expected.primitive_id) << test.name << ", ray " << i;
+                ASSERT_EQ(lane(got.t, i % kLanes<Real>), expected.t) << test.name << ", ray " << i;
+            }
+        }
+    }
+    EXPECT_GT(coherent, 1000) << "of which most shall be beams";
 }
 
 TEST(Stream, CountsATestForEachRayAndNoneForTheEmptyLanes) {
