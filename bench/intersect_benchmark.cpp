@@ -65,19 +65,22 @@ class Packets : public Contestant {
     std::vector<std::int32_t> primitive_id_;
 };
 
-enum class Method { Single, Packet, Stream };
-constexpr Method kMethods[] = {Method::Single, Method::Packet, Method::Stream};
-constexpr const char* kMethodNames[] = {"single", "packet", "stream"};
+enum class Method { Single, Packet, Stream, Pairs };
+constexpr Method kMethods[] = {Method::Single, Method::Packet, Method::Stream, Method::Pairs};
+constexpr const char* kMethodNames[] = {"single", "packet", "stream", "pairs"};
 
 std::unique_ptr<Contestant> make(Method method, std::size_t count) {
     if (method == Method::Packet) return std::make_unique<Packets>(count);
-    return std::make_unique<Staged>(method == Method::Single ? Intersection::Single : Intersection::Stream, count);
+    return std::make_unique<Staged>(method == Method::Single   ? Intersection::Single
+                                    : method == Method::Stream ? Intersection::Stream
+                                                               : Intersection::Pairs,
+                                    count);
 }
 
 /// What holds a ray: its record and its hit; in a stream also the row that the traversal reads.
 double bytes_per_ray(Method method) {
     const std::size_t hit = sizeof(float) + sizeof(std::int32_t);
-    const std::size_t row = method == Method::Stream ? sizeof(RayRow<float>) : 0;
+    const std::size_t row = method == Method::Stream || method == Method::Pairs ? sizeof(RayRow<float>) : 0;
     return static_cast<double>(record_bytes<kPaper, float>() + hit + row);
 }
 

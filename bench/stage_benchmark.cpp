@@ -6,6 +6,7 @@
 
 #include "bench/bench_support.h"
 #include "bench/frozen_rays.h"
+#include "wavefront/setting_names.h"
 
 namespace raypool {
 namespace {
@@ -139,8 +140,8 @@ int main(int argc, char** argv) {
     using namespace raypool;
     if (!begin_benchmarks(argc, argv)) return 2;
     for (const int count : kFrozenBatches) {
-        for (const CameraStage camera : {CameraStage::Staged, CameraStage::Fused}) {
-            const std::string name = camera == CameraStage::Staged ? "staged" : "fused";
+        for (const CameraStage camera : {CameraStage::Staged, CameraStage::Fused, CameraStage::Beam}) {
+            const std::string name = to_string(camera);
             add_row("stage/generate/" + name + "/" + std::to_string(count),
                     [=](benchmark::State& state) { time_generate(state, camera, static_cast<std::size_t>(count)); });
         }

@@ -36,8 +36,10 @@ void add_pool_options(CLI::App& command, PoolOptions& options) {
     add("--pool-scope", options.scope, defaults.scope, "One pool for all threads, or one for each (default: thread)");
     add("--refill", options.refill, defaults.refill, "Camera rays enter when the pool is empty, or when there is room");
     add("--stage-width", options.width, defaults.width, "Rays that a stage treats at a time (default: simd)");
-    add("--intersect", options.intersection, defaults.intersection, "Ray by ray, or as streams (default: stream)");
-    add("--camera", options.camera, defaults.camera, "Camera rays enter the pool at once, or after their first bounce");
+    add("--intersect", options.intersection, defaults.intersection,
+        "Ray by ray, as streams, or as streams of pairs of ray and sphere (default: pairs)");
+    add("--camera", options.camera, defaults.camera,
+        "Camera rays enter the pool at once, or after their first bounce, traced by registers or by beams (default: beam)");
     add("--sort", options.sort, defaults.sort, "Order of records before they are shaded (default: none)");
     add("--append", options.append, defaults.append, "How survivors of a shared pool reach the next round");
     add("--accumulator", options.accumulator, defaults.accumulator,
@@ -91,7 +93,10 @@ PoolSettings pool_settings(const PoolOptions& options, std::size_t record_bytes)
     if (!options.rays.empty()) settings.capacity = parse_pool_rays(options.rays, record_bytes);
     if (options.batch != 0) settings.batch = options.batch;
     settings.batch = std::min(settings.batch, settings.capacity);
-    if (settings.width == StageWidth::Scalar) settings.intersection = Intersection::Single;  // a stream needs registers
+    if (settings.width == StageWidth::Scalar) {  // streams and beams are made of registers
+        settings.intersection = Intersection::Single;
+        if (settings.camera == CameraStage::Beam) settings.camera = CameraStage::Fused;
+    }
     return settings;
 }
 

@@ -189,7 +189,7 @@ WideBvh<Scalar, width> collapse(const BinaryBvh& tree) {
     return wide;
 }
 
-template WideBvh<float, 4> collapse(const BinaryBvh&);
+template WideBvh<float, 4> collapse(const BinaryBvh&);  // of tests: another tree, the same hits
 template WideBvh<float, 8> collapse(const BinaryBvh&);
 template WideBvh<double, 4> collapse(const BinaryBvh&);
 #ifdef __AVX512F__

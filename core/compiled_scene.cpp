@@ -62,6 +62,10 @@ class Compiler {
         const std::size_t count = scene_.spheres.size() + scene_.quads.size() + scene_.planes.size();
         if (count > kMostBoxes)
             throw InputError(fmt::format("scene of {} shapes: must have at most {}", count, kMostBoxes));
+        constexpr std::size_t kMostTextures = SurfaceCode<int>::kMostTextures;
+        if (scene_.textures.size() > kMostTextures)
+            throw InputError(
+                fmt::format("scene of {} textures: must have at most {}", scene_.textures.size(), kMostTextures));
     }
 
     void add_textures() {
@@ -102,7 +106,10 @@ class Compiler {
         using Row = SurfaceRow<Scalar>;
         const Material& material = scene_.materials[material_id];
         Row row{};
-        row.value[Row::kMaterial] = static_cast<Scalar>(material.kind);
+        const auto set_code = [&](int texture, int texture_row) {
+            row.value[Row::kCode] = Scalar(SurfaceCode<int>::make(static_cast<int>(material.kind), texture, texture_row));
+        };
+        set_code(0, 0);
         if (material.kind == Material::Kind::Dielectric) {
             row.value[Row::kParameter] = static_cast<Scalar>(material.ior);
             out_.max_albedo = 1;
@@ -111,9 +118,8 @@ class Compiler {
         const Texture& texture = scene_.textures[material.texture_id];
         row.value[Row::kParameter] = static_cast<Scalar>(material.fuzz);
         for (int i = 0; i < 3; ++i) row.value[Row::kColour + i] = static_cast<Scalar>(texture.even[i]);
-        row.value[Row::kTexture] = static_cast<Scalar>(texture.kind);
-        if (texture.image) row.value[Row::kTexture] += Scalar(image_repeat(texture.wrap, shape).number());
-        row.value[Row::kTextureRow] = static_cast<Scalar>(material.texture_id);
+        const int repeat = texture.image ? image_repeat(texture.wrap, shape).number() : 0;
+        set_code(static_cast<int>(texture.kind) + repeat, material.texture_id);
         const double brightest = texture.image ? 1 : std::max(texture.even.maxCoeff(), texture.odd.maxCoeff());
         double& most = material.kind == Material::Kind::Emissive ? out_.max_radiance : out_.max_albedo;
         most = std::max(most, brightest);
@@ -129,7 +135,6 @@ class Compiler {
                 row.value[Row::kMotion + i] = static_cast<Scalar>(sphere.center1[i] - sphere.center0[i]);
             }
             row.value[Row::kRadius] = static_cast<Scalar>(sphere.radius);
-            row.value[Row::kGroup] = static_cast<Scalar>(out_.surfaces.size());
             out_.surfaces.push_back(row);
         }
         for (const Quad& quad : scene_.quads) add_flat_surface(flat_shape(quad), Shape::Quad);
@@ -140,7 +145,7 @@ class Compiler {
         SurfaceRow<Scalar> surface = surface_row(shape.material_id, kind);
         FlatRow<Scalar> flat{};
         const Coincidence::Flat& met = coincidence_.flats[out_.flats.size()];
-        surface.value[SurfaceRow<Scalar>::kGroup] = static_cast<Scalar>(met.group);
+        surface.value[SurfaceRow<Scalar>::kRadius] = flat_mark(static_cast<Scalar>(met.group));
         for (int i = 0; i < 3; ++i) {
             surface.value[SurfaceRow<Scalar>::kCenter + i] = static_cast<Scalar>(met.normal[i]);
             surface.value[SurfaceRow<Scalar>::kMotion + i] = static_cast<Scalar>(met.point[i]);
@@ -148,7 +153,6 @@ class Compiler {
             flat.value[FlatRow<Scalar>::kDualU + i] = static_cast<Scalar>(shape.dual_u[i]);
             flat.value[FlatRow<Scalar>::kDualV + i] = static_cast<Scalar>(shape.dual_v[i]);
         }
-        surface.value[SurfaceRow<Scalar>::kFlatRow] = static_cast<Scalar>(out_.flats.size());
         out_.surfaces.push_back(surface);
         out_.flats.push_back(flat);
     }
@@ -173,18 +177,14 @@ class Compiler {
             ++large;
 
         const Ids large_ids(by_area.begin(), by_area.begin() + static_cast<std::ptrdiff_t>(large));
-        if (large > 0) out_.large_spheres.push_back(sphere_block<kWidth>(large_ids));
+        if (large > 0) out_.large_spheres.push_back(sphere_block(large_ids));
 
         Ids ids(by_area.begin() + static_cast<std::ptrdiff_t>(large), by_area.end());
         std::sort(ids.begin(), ids.end());
         std::vector<Box> boxes;
         for (const std::uint32_t id : ids) boxes.push_back(box[id]);
-        const auto make_tree = [&]<int width>() {
-            return block_tree<SphereBlock<Scalar, width>, width>(
-                boxes, ids, [&](const Ids& in_leaf) { return sphere_block<width>(in_leaf); });
-        };
-        out_.sphere_tree = make_tree.template operator()<kWidth>();
-        out_.sphere_stream_tree = make_tree.template operator()<kStreamTreeWidth>();
+        out_.sphere_tree =
+            block_tree<SphereBlock<Scalar, kWidth>>(boxes, ids, [&](const Ids& in_leaf) { return sphere_block(in_leaf); });
     }
 
     void add_flats() {
@@ -195,20 +195,16 @@ class Compiler {
         };
         std::vector<Box> boxes;
         for (const std::uint32_t id : ids) boxes.push_back(box_of(id));
-        const auto make_tree = [&]<int width>() {
-            return block_tree<FlatBlock<Scalar, width>, width>(boxes, ids, [&](const Ids& in_leaf) {
-                std::vector<Box> leaf_boxes;
-                for (const std::uint32_t id : in_leaf) leaf_boxes.push_back(box_of(id));
-                return flat_block<width>(in_leaf, leaf_boxes);
-            });
-        };
-        out_.quad_tree = make_tree.template operator()<kWidth>();
-        out_.quad_stream_tree = make_tree.template operator()<kStreamTreeWidth>();
+        out_.quad_tree = block_tree<FlatBlock<Scalar, kWidth>>(boxes, ids, [&](const Ids& in_leaf) {
+            std::vector<Box> leaf_boxes;
+            for (const std::uint32_t id : in_leaf) leaf_boxes.push_back(box_of(id));
+            return flat_block(in_leaf, leaf_boxes);
+        });
         const Ids planes = shown_ids(first_plane, first_plane + scene_.planes.size());
         for (std::size_t i = 0; i < planes.size(); i += kWidth) {
             const Ids block(planes.begin() + static_cast<std::ptrdiff_t>(i),
                             planes.begin() + static_cast<std::ptrdiff_t>(std::min(i + kWidth, planes.size())));
-            out_.planes.push_back(flat_block<kWidth>(block, std::vector<Box>(block.size())));
+            out_.planes.push_back(flat_block(block, std::vector<Box>(block.size())));
         }
     }
 
@@ -220,11 +216,10 @@ class Compiler {
         return ids;
     }
 
-    template <int width>
-    SphereBlock<Scalar, width> sphere_block(const Ids& ids) const {
-        SphereBlock<Scalar, width> block{};
-        std::fill_n(block.radius, width, std::numeric_limits<Scalar>::quiet_NaN());
-        std::fill_n(block.id, width, kNoPrimitive);
+    SphereBlock<Scalar, kWidth> sphere_block(const Ids& ids) const {
+        SphereBlock<Scalar, kWidth> block{};
+        std::fill_n(block.radius, kWidth, std::numeric_limits<Scalar>::quiet_NaN());
+        std::fill_n(block.id, kWidth, kNoPrimitive);
         for (std::size_t lane = 0; lane < ids.size(); ++lane) {
             using Row = SurfaceRow<Scalar>;
             const Row& row = out_.surfaces[ids[lane]];
@@ -239,11 +234,10 @@ class Compiler {
         return block;
     }
 
-    template <int width>
-    FlatBlock<Scalar, width> flat_block(const Ids& ids, const std::vector<Box>& boxes) const {
-        FlatBlock<Scalar, width> block{};
-        for (auto& component : block.normal) std::fill_n(component, width, std::numeric_limits<Scalar>::quiet_NaN());
-        std::fill_n(block.id, width, kNoPrimitive);
+    FlatBlock<Scalar, kWidth> flat_block(const Ids& ids, const std::vector<Box>& boxes) const {
+        FlatBlock<Scalar, kWidth> block{};
+        for (auto& component : block.normal) std::fill_n(component, kWidth, std::numeric_limits<Scalar>::quiet_NaN());
+        std::fill_n(block.id, kWidth, kNoPrimitive);
         for (std::size_t lane = 0; lane < ids.size(); ++lane) {
             const SurfaceRow<Scalar>& surface = out_.surfaces[ids[lane]];
             const FlatRow<Scalar>& flat = out_.flats[ids[lane] - scene_.spheres.size()];
@@ -256,17 +250,17 @@ class Compiler {
                 block.low[i][lane] = static_cast<Scalar>(boxes[lane].low[i]);
                 block.high[i][lane] = static_cast<Scalar>(boxes[lane].high[i]);
             }
-            block.group[lane] = static_cast<std::int32_t>(surface.value[SurfaceRow<Scalar>::kGroup]);
+            block.group[lane] = static_cast<std::int32_t>(flat_mark(surface.value[SurfaceRow<Scalar>::kRadius]));
             block.id[lane] = static_cast<std::int32_t>(ids[lane]);
         }
         return block;
     }
 
-    template <class Block, int width, class MakeBlock>
-    BlockTree<Block, Scalar, width> block_tree(const std::vector<Box>& boxes, const Ids& ids,
-                                               MakeBlock make_block) const {
-        WideBvh<Scalar, width> bvh = collapse<Scalar, width>(build_binary_bvh(boxes, width));
-        BlockTree<Block, Scalar, width> tree;
+    template <class Block, class MakeBlock>
+    BlockTree<Block, Scalar, kWidth> block_tree(const std::vector<Box>& boxes, const Ids& ids,
+                                                MakeBlock make_block) const {
+        WideBvh<Scalar, kWidth> bvh = collapse<Scalar, kWidth>(build_binary_bvh(boxes, kWidth));
+        BlockTree<Block, Scalar, kWidth> tree;
         for (const auto& leaf : bvh.leaves) {
             Ids in_leaf;
             for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) in_leaf.push_back(ids[bvh.order[i]]);

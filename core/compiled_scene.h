@@ -17,23 +17,44 @@
 
 namespace raypool {
 
-/// What shading needs of a primitive and its material: a row of 16 scalars, found by the primitive's id.
+/// What shading needs of a primitive and its material: a row of 12 scalars, found by the primitive's id.
 template <class Scalar>
-struct alignas(16 * sizeof(Scalar)) SurfaceRow {
+struct alignas(4 * sizeof(Scalar)) SurfaceRow {
     enum Column {
         kCenter = 0,     ///< of a sphere at time 0, three; or the unit normal of a quad or plane
-        kRadius = 3,     ///< 0 marks a quad or plane
+        kRadius = 3,     ///< of a sphere; of a quad or plane flat_mark() of the group that a ray which leaves it leaves
         kMotion = 4,     ///< of the centre from time 0 to 1, three; or a point of the plane of a quad or plane
         kParameter = 7,  ///< fuzz of metal, index of refraction of glass
         kColour = 8,     ///< three: albedo or radiance; of a checker the even colour
-        kMaterial = 11,  ///< Material::Kind
-        kTexture = 12,   ///< Texture::Kind; of an image its number plus ImageRepeat's
-        kTextureRow = 13,
-        kFlatRow = 14,
-        kGroup = 15,  ///< what a ray that leaves the primitive leaves: its id, or that of the shapes in one plane
-        kColumns = 16
+        kCode = 11,      ///< SurfaceCode
+        kColumns = 12
     };
     Scalar value[kColumns];
+};
+
+/// A group's id as a number below 0, which no radius is; and back. Shapes in one plane are a group (coincidence.h).
+template <class Real>
+RAYPOOL_INLINE Real flat_mark(const Real& group) {
+    return Real(-1) - group;
+}
+
+/// Material and texture in one whole number: Material::Kind, Texture::Kind (of an image its number plus
+/// ImageRepeat's), and the row of the texture.
+template <class Integer>
+struct SurfaceCode {
+    static constexpr int kMaterialBits = 3;
+    static constexpr int kTextureBits = 3;
+    static constexpr std::size_t kMostTextures = std::size_t{1} << (24 - kMaterialBits - kTextureBits);  ///< in a float
+
+    Integer code;
+    [[nodiscard]] RAYPOOL_INLINE Integer material() const { return code & Integer((1 << kMaterialBits) - 1); }
+    [[nodiscard]] RAYPOOL_INLINE Integer texture() const {
+        return code >> kMaterialBits & Integer((1 << kTextureBits) - 1);
+    }
+    [[nodiscard]] RAYPOOL_INLINE Integer texture_row() const { return code >> (kMaterialBits + kTextureBits); }
+    static constexpr Integer make(Integer material, Integer texture, Integer texture_row) {
+        return material + (texture << kMaterialBits) + (texture_row << (kMaterialBits + kTextureBits));
+    }
 };
 
 template <class Scalar>
@@ -72,7 +93,7 @@ struct alignas(64) FlatBlock {
     Scalar low[3][lanes];  ///< the padded box; unused by planes
     Scalar high[3][lanes];
     std::int32_t id[lanes];
-    std::int32_t group[lanes];  ///< SurfaceRow::kGroup: what a ray leaves
+    std::int32_t group[lanes];  ///< what a ray leaves that leaves the shape: the id of the shapes in its plane
 };
 
 /// A tree whose leaf i is block i.
@@ -83,13 +104,10 @@ struct BlockTree {
     int depth = 0;
 };
 
-/// Children of a node, and primitives of a leaf, in the tree that single rays walk: as many as fill a register, eight
-/// where there is a choice.
+/// Children of a node, and primitives of a leaf: as many as fill a register, eight where there is a choice. Single rays
+/// test them all at once, streams and packets one by one against a register of rays.
 template <class Scalar>
 inline constexpr int kTreeWidth = sizeof(Scalar) == 4 ? 8 : Wide<double, stdx::native_simd<double>::size()>::size();
-
-/// The same for the tree that streams and packets of rays walk.
-inline constexpr int kStreamTreeWidth = 4;
 
 template <class Scalar>
 struct Sky {
@@ -99,10 +117,7 @@ struct Sky {
 
 template <class Scalar>
 struct CompiledScene {
-    template <int width>
-    using SphereTree = BlockTree<SphereBlock<Scalar, width>, Scalar, width>;
-    template <int width>
-    using QuadTree = BlockTree<FlatBlock<Scalar, width>, Scalar, width>;
+    static constexpr int kWidth = kTreeWidth<Scalar>;
 
     SceneNeeds needs;
     std::int64_t width = 0;  ///< of the image, in pixels
@@ -113,26 +128,24 @@ struct CompiledScene {
     double max_albedo = 0;    ///< no hit leaves a path more of its throughput in any channel
 
     std::vector<SurfaceRow<Scalar>> surfaces;  ///< by primitive id
-    std::vector<TextureRow<Scalar>> textures;  ///< by kTextureRow
-    std::vector<FlatRow<Scalar>> flats;        ///< by kFlatRow
+    std::vector<TextureRow<Scalar>> textures;  ///< by texture id
+    std::vector<FlatRow<Scalar>> flats;        ///< of the last primitives, by id less first_flat()
     std::vector<ImageView<Scalar>> images;     ///< by texture id, beside `textures`
     std::vector<Scalar> texels;
 
     /// Spheres that span the scene, and planes: every ray tests them, before the trees.
-    std::vector<SphereBlock<Scalar, kTreeWidth<Scalar>>> large_spheres;
-    std::vector<FlatBlock<Scalar, kTreeWidth<Scalar>>> planes;
-    /// For one ray against a register of boxes or shapes.
-    SphereTree<kTreeWidth<Scalar>> sphere_tree;
-    QuadTree<kTreeWidth<Scalar>> quad_tree;
-    /// For a register of rays against one box or shape.
-    SphereTree<kStreamTreeWidth> sphere_stream_tree;
-    QuadTree<kStreamTreeWidth> quad_stream_tree;
+    std::vector<SphereBlock<Scalar, kWidth>> large_spheres;
+    std::vector<FlatBlock<Scalar, kWidth>> planes;
+    BlockTree<SphereBlock<Scalar, kWidth>, Scalar, kWidth> sphere_tree;
+    BlockTree<FlatBlock<Scalar, kWidth>, Scalar, kWidth> quad_tree;
 
     /// Radiance that a limit of depth cuts off a pixel, on average over its paths: at most this in any channel.
     [[nodiscard]] double truncation_bound(std::int32_t depth) const {
         return max_radiance * std::pow(max_albedo, depth);
     }
 
+    /// The id of the first quad or plane.
+    [[nodiscard]] std::size_t first_flat() const { return surfaces.size() - flats.size(); }
     [[nodiscard]] std::int64_t pixel_count() const { return width * height; }
     [[nodiscard]] std::size_t bytes() const;  ///< of all tables, with this
 
@@ -152,8 +165,6 @@ struct CompiledScene {
         };
         visit_tree(self.sphere_tree);
         visit_tree(self.quad_tree);
-        visit_tree(self.sphere_stream_tree);
-        visit_tree(self.quad_stream_tree);
     }
 };
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/simd_x86.h"
 #include "core/vec.h"
 
 namespace raypool {
@@ -96,6 +97,13 @@ class SampleConverter {
             fixed[i] = std::llrint(value * scale_);
         }
         return fixed;
+    }
+    /// convert() of eight samples whose channels are columns, where the processor can: fixed[k][i] of channel k. False, and
+    /// nothing of use in `fixed`, where it cannot or a sample is bad.
+    [[nodiscard]] bool convert_eight(const float* const (&channel)[3], std::int64_t (&fixed)[3][8]) const {
+        bool is_good = true;
+        for (int k = 0; k < 3; ++k) is_good = is_good && x86::round_eight(channel[k], scale_, limit_, fixed[k]);
+        return is_good;
     }
     /// r^2 + g^2 + b^2 of a whole sample, for the sum of squares: exact.
     [[nodiscard]] FixedSquare square(const FixedRgb& sample) const {

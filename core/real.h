@@ -346,21 +346,61 @@ RAYPOOL_INLINE Uint32<Real> lane_numbers() {
     }
 }
 
+/// No lane may be NaN.
+template <class Real>
+RAYPOOL_INLINE ScalarOf<Real> greatest_lane(const Real& v) {
+    if constexpr (!Simd<Real>) {
+        return v;
+    } else {
+        return x86::greatest(detail::reg(v));
+    }
+}
+
+/// The first `count` lanes.
+template <class Real>
+RAYPOOL_INLINE Mask<Real> lanes_before(std::size_t count) {
+    return from_uint32<Real>(lane_numbers<Real>()) < Real(static_cast<ScalarOf<Real>>(count));
+}
+
+/// table[which[lane]] of `size` scalars, as many as fill a register or half of one; `which` is below `size`.
+template <int size, class Real>
+RAYPOOL_INLINE Real pick(const ScalarOf<Real>* table, const Uint32<Real>& which) {
+    if constexpr (!Simd<Real>) {
+        return table[which];
+    } else {
+        return std::bit_cast<Real>(x86::pick<size>(table, std::bit_cast<detail::IntegerRegister<Uint32<Real>>>(which)));
+    }
+}
+
+/// Rows of `count` scalars, a multiple of four, that begin at table[offset[lane]], transposed: column[k] =
+/// table[offset[lane] + k]. All lanes' offsets must be in the table.
+template <int count, class Real>
+RAYPOOL_INLINE void load_rows_at(const ScalarOf<Real>* table, const std::uint32_t* offset, Real* column) {
+    static_assert(count % 4 == 0);
+    if constexpr (Simd<Real> && std::same_as<ScalarOf<Real>, float>) {
+        for (int first = 0; first < count; first += 4) {
+            const float* rows[kLanes<Real>];
+            for (int i = 0; i < kLanes<Real>; ++i) rows[i] = table + first + offset[i];
+            detail::RealRegister<Real> block[4];
+            x86::transpose_rows(rows, block);
+            for (int k = 0; k < 4; ++k) column[first + k] = std::bit_cast<Real>(block[k]);
+        }
+    } else if constexpr (Simd<Real>) {
+        for (int k = 0; k < count; ++k) column[k] = Real([&](auto i) { return table[offset[i] + k]; });
+    } else {
+        for (int k = 0; k < count; ++k) column[k] = table[*offset + k];
+    }
+}
+
 /// Row `row_id[lane]` of a table whose rows are `stride` scalars long: column[k] = table[row_id * stride + first + k].
 /// `count` is a multiple of four; every row id, also of lanes that the caller will ignore, must be in the table.
 template <int count, class Real>
 RAYPOOL_INLINE void load_rows(const ScalarOf<Real>* table, int stride, const Int<Real>& row_id, Real* column) {
     static_assert(count % 4 == 0);
     if constexpr (Simd<Real> && std::same_as<ScalarOf<Real>, float>) {
-        alignas(64) std::int32_t ids[kLanes<Real>];
-        row_id.copy_to(ids, stdx::vector_aligned);
-        for (int first = 0; first < count; first += 4) {
-            const float* rows[kLanes<Real>];
-            for (int i = 0; i < kLanes<Real>; ++i) rows[i] = table + std::int64_t{ids[i]} * stride + first;
-            detail::RealRegister<Real> block[4];
-            x86::transpose_rows(rows, block);
-            for (int k = 0; k < 4; ++k) column[first + k] = std::bit_cast<Real>(block[k]);
-        }
+        alignas(64) std::uint32_t offset[kLanes<Real>];  // kMostBoxes rows of 16 scalars are 2^28
+        stdx::static_simd_cast<Uint32<Real>>(row_id * Int<Real>(stride)).copy_to(offset, stdx::vector_aligned);
+        load_rows_at<count, Real>(table, offset, column);
     } else if constexpr (Simd<Real>) {
         for (int k = 0; k < count; ++k) column[k] = Real([&](auto i) { return table[lane(row_id, i) * stride + k]; });
     } else {

@@ -46,7 +46,7 @@ RAYPOOL_INLINE SurfacePoint<Real> surface_point(const Ray<Real>& ray, const Real
     point.outward = unit<Real>(vec3<Real>(p[0] - center[0], p[1] - center[1], p[2] - center[2]));
     point.position = select<Real>(radius < t, along<Real>(center, radius, point.outward), p);
     if constexpr (needs.flat) {
-        const Mask<Real> is_flat = radius == Real(0);
+        const Mask<Real> is_flat = radius < Real(0);
         point.outward = select<Real>(is_flat, stored, point.outward);
         // Not the height above the plane, negated: gcc 12 makes one instruction of that, with another sign of zero.
         const Real depth = dot<Real>(vec3<Real>(motion[0] - p[0], motion[1] - p[1], motion[2] - p[2]), stored);
@@ -60,28 +60,34 @@ RAYPOOL_INLINE SurfacePoint<Real> surface_point(const Ray<Real>& ray, const Real
 /// The row's colour, or what its texture makes of it, where `is_wanted`.
 template <SceneNeeds needs, class Real>
 RAYPOOL_INLINE Vec3<Real> surface_colour(const CompiledScene<ScalarOf<Real>>& scene, const SurfacePoint<Real>& point,
-                                         const Real* row, const Mask<Real>& is_wanted) {
+                                         const Int<Real>& primitive_id, const Real* row,
+                                         const SurfaceCode<Int<Real>>& code, const Mask<Real>& is_wanted) {
     using S = ScalarOf<Real>;
     using Row = SurfaceRow<S>;
     Vec3<Real> colour = vec3<Real>(row[Row::kColour], row[Row::kColour + 1], row[Row::kColour + 2]);
     if constexpr (!needs.checker && !needs.uv) return colour;
 
-    const auto is_kind = [&](Texture::Kind kind) { return is_wanted && row[Row::kTexture] == Real(S(kind)); };
+    const Int<Real> texture_kind = code.texture();
+    const auto is_kind = [&](Texture::Kind kind) {
+        return is_wanted && as_mask<Real>(texture_kind == Int<Real>(static_cast<int>(kind)));
+    };
     const Mask<Real> is_checker_3d = needs.checker ? is_kind(Texture::Kind::Checker3d) : Mask<Real>(false);
     const Mask<Real> is_checker_uv = needs.uv ? is_kind(Texture::Kind::CheckerUv) : Mask<Real>(false);
     const Mask<Real> is_image =
-        needs.uv ? is_wanted && row[Row::kTexture] >= Real(S(Texture::Kind::Image)) : Mask<Real>(false);
+        needs.uv ? is_wanted && as_mask<Real>(texture_kind >= Int<Real>(static_cast<int>(Texture::Kind::Image)))
+                 : Mask<Real>(false);
 
     std::array<Real, 2> uv{Real(0), Real(0)};
     if constexpr (needs.uv) {
         if (any(is_checker_uv || is_image)) {
             uv = sphere_coordinates<Real>(point.outward);
             if constexpr (needs.flat) {
-                const Mask<Real> is_flat = row[Row::kRadius] == Real(0);
+                const Mask<Real> is_flat = row[Row::kRadius] < Real(0);
                 if (any(is_flat)) {
                     Real flat[FlatRow<S>::kColumns];
+                    const Int<Real> flat_row = primitive_id - Int<Real>(static_cast<int>(scene.first_flat()));
                     load_rows<FlatRow<S>::kColumns, Real>(scene.flats.data()->value, FlatRow<S>::kColumns,
-                                                          to_int<Real>(row[Row::kFlatRow]), flat);
+                                                          select(is_flat, flat_row, Int<Real>(0)), flat);
                     const auto part = [&](int first) {
                         return vec3<Real>(flat[first], flat[first + 1], flat[first + 2]);
                     };
@@ -95,8 +101,15 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const CompiledScene<ScalarOf<Real>>& sc
     if (any(is_checker_3d || is_checker_uv)) {
         using Tex = TextureRow<S>;
         Real texture[Tex::kColumns];
-        load_rows<Tex::kColumns, Real>(scene.textures.data()->value, Tex::kColumns, to_int<Real>(row[Row::kTextureRow]),
-                                       texture);
+        const Int<Real> texture_row = code.texture_row();
+        const Mask<Real> is_checker = is_checker_3d || is_checker_uv;
+        const auto first = lane(texture_row, std::countr_zero(mask_bits(is_checker)));
+        if (none(is_checker && as_mask<Real>(texture_row != Int<Real>(first)))) {  // mostly all want the same
+            const S* one = scene.textures[static_cast<std::size_t>(first)].value;
+            for (int k = 0; k < Tex::kColumns; ++k) texture[k] = Real(one[k]);
+        } else {
+            load_rows<Tex::kColumns, Real>(scene.textures.data()->value, Tex::kColumns, texture_row, texture);
+        }
         const Split<Real> scale{texture[Tex::kScaleHigh], texture[Tex::kScaleLow]};
         const Vec3<Real> odd = vec3<Real>(texture[Tex::kOdd], texture[Tex::kOdd + 1], texture[Tex::kOdd + 2]);
         Vec3<Real> at;
@@ -118,8 +131,8 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const CompiledScene<ScalarOf<Real>>& sc
     if constexpr (needs.uv) {
         for (unsigned bits = mask_bits(is_image); bits != 0; bits &= bits - 1) {
             const int i = std::countr_zero(bits);
-            const auto& image = scene.images[static_cast<std::size_t>(lane(row[Row::kTextureRow], i))];
-            const auto repeat = static_cast<int>(lane(row[Row::kTexture], i)) - static_cast<int>(Texture::Kind::Image);
+            const auto& image = scene.images[static_cast<std::size_t>(lane(code.texture_row(), i))];
+            const auto repeat = static_cast<int>(lane(texture_kind, i)) - static_cast<int>(Texture::Kind::Image);
             const Vec3<S> texel =
                 image_colour<S>(image, lane(uv[0], i), lane(uv[1], i), ImageRepeat::of_number(repeat));
             for (int k = 0; k < 3; ++k) {
@@ -159,7 +172,7 @@ enum class Splitting : bool { Off, On };
 template <class Real>
 struct Scattered {
     Vec3<Real> origin;
-    Int<Real> leaving_id;  ///< what the path leaves: SurfaceRow::kGroup
+    Int<Real> leaving_id;  ///< what the path leaves: a sphere's id; of a quad or plane the id of the shapes in its plane
     Vec3<Real> direction;
     Vec3<Real> throughput;  ///< where is_emitter: the radiance that the path brings home
     Mask<Real> is_alive;    ///< the path goes on
@@ -185,7 +198,11 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
     using Row = SurfaceRow<S>;
     Real row[Row::kColumns];
     load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, primitive_id, row);
-    const auto is_material = [&](Material::Kind kind) { return row[Row::kMaterial] == Real(S(kind)); };
+    const SurfaceCode<Int<Real>> code{to_int<Real>(row[Row::kCode])};
+    const Int<Real> material = code.material();
+    const auto is_material = [&](Material::Kind kind) {
+        return as_mask<Real>(material == Int<Real>(static_cast<int>(kind)));
+    };
 
     const SurfacePoint<Real> point = surface_point<needs, Real>(ray, t, row);
     const std::array<Real, 4> random = random_block<Real>(key, step, RandomPurpose::Scatter, seed);
@@ -193,13 +210,16 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
     Scattered<Real> out;
     out.origin = point.position;
     out.leaving_id = primitive_id;
-    if constexpr (needs.flat) out.leaving_id = to_int<Real>(row[Row::kGroup]);
+    if constexpr (needs.flat) {
+        const Real mark = row[Row::kRadius];
+        out.leaving_id = select(mark < Real(0), to_int<Real>(flat_mark(mark)), primitive_id);
+    }
     out.is_emitter = needs.emissive ? is_material(Material::Kind::Emissive) : Mask<Real>(false);
     const Mask<Real> is_glass = needs.dielectric ? is_material(Material::Kind::Dielectric) : Mask<Real>(false);
     const Mask<Real> is_metal = needs.metal ? is_material(Material::Kind::Metal) : Mask<Real>(false);
 
     // Colour: of all but glass.
-    const Vec3<Real> colour = surface_colour<needs, Real>(scene, point, row, !is_glass);
+    const Vec3<Real> colour = surface_colour<needs, Real>(scene, point, primitive_id, row, code, !is_glass);
     for (int i = 0; i < 3; ++i) out.throughput[i] = select(is_glass, throughput[i], throughput[i] * colour[i]);
 
     // Direction, by material.

@@ -31,17 +31,22 @@ struct RayInverse {
     Mask<Real> is_negative[3];  ///< the sign bit of the direction, of -0 too
 };
 
+/// `scale` is 1 / direction; of -0 it is negative too.
 template <class Real>
-RAYPOOL_INLINE RayInverse<Real> ray_inverse(const Vec3<Real>& direction) {
+RAYPOOL_INLINE RayInverse<Real> inverse_of_scale(const Vec3<Real>& scale) {
     using S = ScalarOf<Real>;
     RayInverse<Real> inverse;
     for (int i = 0; i < 3; ++i) {
-        const Real scale = Real(1) / direction[i];
-        inverse.near_scale[i] = scale * Real(1 - kBoxSlack<S>);
-        inverse.far_scale[i] = scale * Real(1 + kBoxSlack<S>);
-        inverse.is_negative[i] = copysign(Real(1), direction[i]) < Real(0);
+        inverse.near_scale[i] = scale[i] * Real(1 - kBoxSlack<S>);
+        inverse.far_scale[i] = scale[i] * Real(1 + kBoxSlack<S>);
+        inverse.is_negative[i] = scale[i] < Real(0);
     }
     return inverse;
+}
+template <class Real>
+RAYPOOL_INLINE RayInverse<Real> ray_inverse(const Vec3<Real>& direction) {
+    return inverse_of_scale<Real>(
+        vec3<Real>(Real(1) / direction[0], Real(1) / direction[1], Real(1) / direction[2]));
 }
 
 /// Where a ray is inside a box: from `enter` (>= 0) to `exit`; nowhere if enter > exit.
@@ -122,6 +127,59 @@ RAYPOOL_INLINE Real sphere_distance(const Vec3<Real>& origin, const Vec3<Real>& 
     const Real t = select(c <= Real(0) && q > Real(0), q, c / q);
     const Real t_or_second = select(is_leaving, b + b, t);
     return select(is_met && t_or_second > Real(0), t_or_second, Real(kInfinity<Real>));
+}
+
+/// What may_meet_sphere() knows of a sphere.
+template <class Real>
+struct SphereReach {
+    Real square;  ///< of a radius larger than the sphere's by more than all rounding
+    Real least;   ///< how far behind its origin a ray that leaves the sphere may see the centre: negative
+};
+
+/// `padded_radius` is that of shape_bounds.h: p = padded - radius is 12 eps radius + 4 eps reach at least, where reach
+/// is the greatest coordinate of the centre.
+template <class Real>
+RAYPOOL_INLINE SphereReach<Real> sphere_reach(const Real& radius, const Real& padded_radius) {
+    using S = ScalarOf<Real>;
+    const Real pad = Real(4) * (padded_radius - radius);
+    const Real reach = radius + pad;
+    // The smallest numbers are flushed to zero where the exact test squares, a few times over.
+    const Real flushed(64 * std::numeric_limits<S>::min());
+    return {mad<Real>(reach * reach, Real(1 + 4 * std::numeric_limits<S>::epsilon()), flushed), -pad};
+}
+
+/// From a ray's origin to the centre of a sphere at the ray's time, for may_meet_sphere(). Rounds otherwise than
+/// center_at() and a difference do, and takes an operation less.
+template <class Real>
+RAYPOOL_INLINE Vec3<Real> toward_sphere(const Vec3<Real>& center0, const Vec3<Real>& motion, const Real& time,
+                                        const Vec3<Real>& origin) {
+    return along<Real>(vec3<Real>(center0[0] - origin[0], center0[1] - origin[1], center0[2] - origin[2]), time,
+                       motion);
+}
+
+/// Whether sphere_distance() may find a hit: false for most that it does not, never for one that it does. `toward`
+/// leads from the ray's origin to the centre.
+///
+/// Why none is lost. Let u = eps / 2, f the exact test's own origin - centre, g = toward, d the direction, |d|^2 = 1 + h
+/// with |h| <= 9 u, as unit() makes it, R = radius + 4 p. f + g is at most D = 3 u |g| + 9 u reach. The exact test meets
+/// the line where the vector it computes from the centre to the line's closest point, with an error of at most
+/// 3.2 u |f| + 3 u radius, is no longer than the radius. So the true distance of line and centre is at most
+/// radius (1 + 3 u) + 3.2 u |f| + D, and with |g|^2 = distance^2 + (g.d)^2 / (1 + h)
+///     |g|^2 - (g.d)^2 <= R^2 + 27 eps |g|^2,
+/// where mixed terms go to R^2 (it exceeds radius^2 by 96 eps radius^2 + 32 eps radius reach) or to |g|^2. The 27
+/// include the rounding below and h; 32 are allowed. A hit has the centre ahead (g.d > 0) or the origin within the
+/// sphere, |f| <= radius (1 + 3 u), which the same inequality without (g.d)^2 lets pass. A ray that leaves the sphere
+/// meets it again only where f.d < 0, and g.d differs from -f.d by at most 9 u |g| + 9 u reach, with |g| the radius to
+/// rounding: less than 4 p. Coordinates are far from overflow: scenes end at 1e12.
+template <class Real>
+RAYPOOL_INLINE Mask<Real> may_meet_sphere(const Vec3<Real>& toward, const Vec3<Real>& direction,
+                                          const SphereReach<Real>& reach, const Mask<Real>& is_leaving) {
+    constexpr ScalarOf<Real> kEpsilon = std::numeric_limits<ScalarOf<Real>>::epsilon();
+    const Real ahead = dot<Real>(toward, direction);
+    const Real in_front = max(ahead, Real(0));
+    const Real rest = nmad<Real>(dot<Real>(toward, toward), Real(1 - 32 * kEpsilon), reach.square);
+    const Mask<Real> is_near = mad<Real>(in_front, in_front, rest) >= Real(0);
+    return (is_leaving && ahead >= reach.least) || (is_near && !is_leaving);
 }
 
 /// Distance to the plane through `point` with unit `normal`, seen from either side.

@@ -163,6 +163,48 @@ RAYPOOL_INLINE void transpose_rows(const float* const (&row)[16], __m512 (&colum
 }
 #endif
 
+/// The greatest lane; none is NaN.
+RAYPOOL_INLINE float greatest(__m256 v) {
+    __m128 m = _mm_max_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+    m = _mm_max_ps(m, _mm_movehl_ps(m, m));
+    return _mm_cvtss_f32(_mm_max_ss(m, _mm_movehdup_ps(m)));
+}
+RAYPOOL_INLINE double greatest(__m256d v) {
+    const __m128d m = _mm_max_pd(_mm256_castpd256_pd128(v), _mm256_extractf128_pd(v, 1));
+    return _mm_cvtsd_f64(_mm_max_sd(m, _mm_unpackhi_pd(m, m)));
+}
+#ifdef __AVX512F__
+RAYPOOL_INLINE float greatest(__m512 v) {
+    return greatest(_mm256_max_ps(_mm512_castps512_ps256(v), _mm256_castpd_ps(_mm512_extractf64x4_pd(_mm512_castps_pd(v), 1))));
+}
+RAYPOOL_INLINE double greatest(__m512d v) {
+    return greatest(_mm256_max_pd(_mm512_castpd512_pd256(v), _mm512_extractf64x4_pd(v, 1)));
+}
+#endif
+
+/// table[which[lane]] of a table of `size` floats or doubles, which are as many as fill a register or half of one.
+template <int size>
+RAYPOOL_INLINE __m256 pick(const float* table, __m256i which) {
+    static_assert(size == 8);
+    return _mm256_permutevar8x32_ps(_mm256_loadu_ps(table), which);
+}
+template <int size>
+RAYPOOL_INLINE __m256d pick(const double* table, __m128i which) {
+    return _mm256_i32gather_pd(table, which, 8);
+}
+#ifdef __AVX512F__
+template <int size>
+RAYPOOL_INLINE __m512 pick(const float* table, __m512i which) {
+    static_assert(size == 8);
+    return _mm512_permutexvar_ps(which, _mm512_castps256_ps512(_mm256_loadu_ps(table)));
+}
+template <int size>
+RAYPOOL_INLINE __m512d pick(const double* table, __m256i which) {
+    static_assert(size == 8);
+    return _mm512_permutexvar_pd(_mm512_cvtepu32_epi64(which), _mm512_loadu_pd(table));
+}
+#endif
+
 /// The inverse: lane i of the four columns goes to rows[i * stride .. + 3].
 RAYPOOL_INLINE void store_transposed(const __m256 (&column)[4], float* rows, int stride) {
     const __m256 t0 = _mm256_unpacklo_ps(column[0], column[1]), t1 = _mm256_unpackhi_ps(column[0], column[1]);
@@ -188,6 +230,25 @@ RAYPOOL_INLINE void store_transposed(const __m512 (&column)[4], float* rows, int
         _mm_storeu_ps(rows + (i + 12) * stride, _mm512_extractf32x4_ps(row[i], 3));
     }
 }
+#endif
+
+/// Rounds values[i] * scale of eight floats, in double, to the nearest integers. False, and nothing is done, where one
+/// of the values is not within [0, limit].
+#ifdef __AVX512DQ__
+RAYPOOL_INLINE bool round_eight(const float* values, double scale, double limit, std::int64_t* rounded) {
+    const __m512d value = _mm512_cvtps_pd(_mm256_loadu_ps(values));
+    const __mmask8 is_good = _mm512_mask_cmp_pd_mask(_mm512_cmp_pd_mask(value, _mm512_setzero_pd(), _CMP_GE_OQ), value,
+                                                     _mm512_set1_pd(limit), _CMP_LE_OQ);
+    if (is_good != 0xff) return false;
+    _mm512_storeu_si512(rounded, _mm512_cvtpd_epi64(_mm512_mul_pd(value, _mm512_set1_pd(scale))));
+    return true;
+}
+inline constexpr bool kRoundsEight = true;
+#else
+inline bool round_eight(const float*, double, double, std::int64_t*) {
+    return false;
+}
+inline constexpr bool kRoundsEight = false;
 #endif
 
 /// The lanes whose bit is set in `mask`, moved to the front; what follows them is unspecified.

@@ -57,12 +57,12 @@ struct SpreadRay {
     int sign[3];  ///< of the direction: 1 where negative, so that bounds[axis][sign] is the near side
     std::int32_t leaving_id;
 
-    RAYPOOL_INLINE SpreadRay(const Ray<ScalarOf<Real>>& ray, std::int32_t leaving)
+    RAYPOOL_INLINE SpreadRay(const Ray<ScalarOf<Real>>& ray, const RayInverse<ScalarOf<Real>>& scalar,
+                             std::int32_t leaving)
         : origin(broadcast<Real>(ray.origin)),
           direction(broadcast<Real>(ray.direction)),
           time(ray.time),
           leaving_id(leaving) {
-        const RayInverse<ScalarOf<Real>> scalar = ray_inverse<ScalarOf<Real>>(ray.direction);
         for (int i = 0; i < 3; ++i) {
             inverse.near_scale[i] = Real(scalar.near_scale[i]);
             inverse.far_scale[i] = Real(scalar.far_scale[i]);
@@ -150,9 +150,10 @@ RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& r
     }
 }
 
+/// From `child` of the tree on.
 template <SceneNeeds needs, class Real, class Block, class Work>
 RAYPOOL_INLINE void walk(const BlockTree<Block, ScalarOf<Real>, kLanes<Real>>& tree, const SpreadRay<Real>& ray,
-                         Hit<ScalarOf<Real>>& hit, Work& work) {
+                         Hit<ScalarOf<Real>>& hit, Work& work, std::int32_t child = 0) {
     using S = ScalarOf<Real>;
     if (tree.nodes.empty()) return;
     struct Entry {
@@ -161,7 +162,6 @@ RAYPOOL_INLINE void walk(const BlockTree<Block, ScalarOf<Real>, kLanes<Real>>& t
     };
     Entry stack[kTraversalStack<kLanes<Real>>];
     Entry* top = stack;
-    std::int32_t child = 0;
     for (;;) {
         if (child >= 0) {
             const auto& node = tree.nodes[child];
@@ -199,12 +199,12 @@ RAYPOOL_INLINE void walk(const BlockTree<Block, ScalarOf<Real>, kLanes<Real>>& t
 
 }  // namespace detail
 
-/// `leaving_id` is what the ray starts on (SurfaceRow::kGroup of the primitive), or kNoPrimitive.
+/// `leaving_id` is what the ray starts on (Scattered::leaving_id), or kNoPrimitive.
 template <SceneNeeds needs, class Scalar, class Work>
 [[gnu::noinline]] Hit<Scalar> closest_hit(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray,
                                           std::int32_t leaving_id, Work& work) {
     using Real = Wide<Scalar, kTreeWidth<Scalar>>;
-    const SpreadRay<Real> spread(ray, leaving_id);
+    const SpreadRay<Real> spread(ray, ray_inverse<Scalar>(ray.direction), leaving_id);
     Hit<Scalar> hit;
     for (const auto& block : scene.large_spheres) {
         work.count(block);

@@ -94,7 +94,19 @@ void add_integers(const Layout& layout, const Deposits<Scalar>& deposits, Sample
             sum += value;
         }
     };
-    for (std::size_t i = 0; i < deposits.count(); ++i) {
+    std::size_t begin = 0;
+    if constexpr (x86::kRoundsEight && sizeof(Scalar) == sizeof(float)) {
+        while (layout.squares == nullptr && begin + 8 <= deposits.count()) {
+            std::int64_t fixed[3][8];
+            if (!converter.convert_eight(
+                    {deposits.channel(0, begin), deposits.channel(1, begin), deposits.channel(2, begin)}, fixed))
+                break;
+            for (std::size_t i = 0; i < 8; ++i)
+                for (int k = 0; k < 3; ++k) add(layout.at(deposits.pixel(begin + i), k), fixed[k][i]);
+            begin += 8;
+        }
+    }
+    for (std::size_t i = begin; i < deposits.count(); ++i) {
         const FixedRgb fixed = converter.convert<Scalar>(deposits.radiance(i));
         for (int k = 0; k < 3; ++k) add(layout.at(deposits.pixel(i), k), fixed[static_cast<std::size_t>(k)]);
         // A path that is not split deposits once, so that a deposit is a whole sample.

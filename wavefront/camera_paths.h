@@ -22,11 +22,7 @@ struct CameraLanes {
     Real y;
     Uint32<Real> pixel;
     Uint32<Real> sample;
-    int count;
-
-    [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_active() const {
-        return from_uint32<Real>(lane_numbers<Real>()) < Real(static_cast<ScalarOf<Real>>(count));
-    }
+    int count;  ///< lanes with a path; the others hold the last one's again, or a later sample of its pixel
 };
 
 /// Paths begin .. end - 1 of the samples [first_sample, end_sample) of a range of pixels.

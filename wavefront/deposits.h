@@ -37,6 +37,9 @@ class Deposits {
         return vec3<Scalar>(rgb_[0][i], rgb_[1][i], rgb_[2][i]);
     }
 
+    /// Channel k of this one and of those behind it.
+    [[nodiscard]] const Scalar* channel(int k, std::size_t i) const { return rgb_[k].data() + i; }
+
   private:
     static constexpr std::size_t kRoom = 16;  ///< of a register stored whole
     std::size_t count_ = 0;

@@ -44,6 +44,10 @@ inline std::vector<Rung> ladder(int threads) {
     add("regenerate", "camera rays enter as soon as there is room");
     pool.camera = CameraStage::Fused;
     add("fused", "camera rays do their first bounce in registers");
+    pool.intersection = Intersection::Pairs;
+    add("pairs", "of spheres and rays, those that may meet are tested in full registers");
+    pool.camera = CameraStage::Beam;
+    add("beam", "64 camera rays go down the tree as one");
     pool.sort = Sort::Material;
     add("sorted", "records are sorted by material before they are shaded");
     return rungs;

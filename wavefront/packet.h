@@ -12,7 +12,7 @@ RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, co
                                 Hit<Real>& hit, Work& work) {
     if (tree.nodes.empty()) return;
     using S = ScalarOf<Real>;
-    constexpr int kWidth = kStreamTreeWidth;
+    constexpr int kWidth = kTreeWidth<S>;
     struct Entry {
         S enter;  ///< of the first ray that meets it: only an order to visit in
         std::int32_t child;
@@ -53,18 +53,14 @@ template <SceneNeeds needs, class Real, class Work>
 RAYPOOL_INLINE Hit<Real> closest_hits(const CompiledScene<ScalarOf<Real>>& scene, const WideRays<Real>& rays,
                                       const Mask<Real>& is_active, Work& work) {
     Hit<Real> hit;
-    intersect_large<needs, Real>(scene, rays, std::popcount(mask_bits(is_active)), hit, work);
-    if constexpr (needs.flat) detail::walk_packet<needs, Real>(scene.quad_stream_tree, rays, is_active, hit, work);
-    detail::walk_packet<needs, Real>(scene.sphere_stream_tree, rays, is_active, hit, work);
+    const int count = std::popcount(mask_bits(is_active));
+    intersect_all<needs>(scene.large_spheres, rays, count, hit, work);
+    if constexpr (needs.flat) {
+        intersect_all<needs>(scene.planes, rays, count, hit, work);
+        detail::walk_packet<needs, Real>(scene.quad_tree, rays, is_active, hit, work);
+    }
+    detail::walk_packet<needs, Real>(scene.sphere_tree, rays, is_active, hit, work);
     return hit;
-}
-
-/// The same of camera rays, which start on nothing.
-template <SceneNeeds needs, class Real, class Work>
-RAYPOOL_INLINE Hit<Real> closest_hits(const CompiledScene<ScalarOf<Real>>& scene, const Ray<Real>& ray,
-                                      const Mask<Real>& is_active, Work& work) {
-    const WideRays<Real> rays{ray, ray_inverse<Real>(ray.direction), Int<Real>(kNoPrimitive)};
-    return closest_hits<needs, Real>(scene, rays, is_active, work);
 }
 
 }  // namespace raypool::wavefront

@@ -87,7 +87,8 @@ class ThreadPoolSession : public PoolSession<ScalarOf<Real>> {
     ThreadPoolSession(const CompiledScene<ScalarOf<Real>>& scene, const RenderSettings& settings,
                       const PoolSettings& pool, Framebuffer& framebuffer)
         : Base(scene, settings, pool, framebuffer, record_bytes<needs, ScalarOf<Real>>()) {
-        this->take_memory(static_cast<std::size_t>(settings.threads) * Pool::bytes(this->context(), this->capacity()));
+        this->take_memory(static_cast<std::size_t>(settings.threads) * Pool::bytes(this->context(), this->capacity()),
+                          this->capacity());
         pools_.resize(static_cast<std::size_t>(settings.threads));
         this->finish_setup([&](int thread) {
             pools_[static_cast<std::size_t>(thread)] =
@@ -157,7 +158,8 @@ class SharedPoolSession : public PoolSession<ScalarOf<Real>> {
         const PoolShape shape(this->capacity(), batch, settings.split_depth);
         const auto threads = static_cast<std::size_t>(settings.threads);
         this->take_memory(shared_pool_bytes<needs, Scalar>(pool.append, shape, settings.threads) +
-                           threads * ThreadStages::bytes(this->context(), shape.stride));
+                              threads * ThreadStages::bytes(this->context(), shape.stride),
+                          shape.stride);
         pool_ = make_shared_pool<needs, Scalar>(pool.append, this->capacity(), batch, settings.split_depth,
                                                 settings.threads);
         stages_.resize(threads);

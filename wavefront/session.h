@@ -10,7 +10,10 @@
 #include <memory>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "core/engine.h"
+#include "core/error.h"
 #include "core/loop.h"
 #include "core/memory.h"
 #include "wavefront/accumulator.h"
@@ -50,11 +53,14 @@ class PoolSession : public RenderSession {
     }
 
     /// Refuses `pool_bytes` for pools and stages, and what the accumulator takes, where there is not as much; where there
-    /// is, makes the accumulator.
-    void take_memory(std::size_t pool_bytes) {
+    /// is, makes the accumulator. Refuses streams of so many rays that pairs of them with shapes have no numbers.
+    void take_memory(std::size_t pool_bytes, std::size_t stream_rays) {
         report_.pool_bytes = pool_bytes + accumulator_bytes(pool_.accumulator, framebuffer_, settings_.threads);
         check_available(report_.pool_bytes,
                         "--pool-rays, --threads, --accumulator: the pools, the stages' memory and the accumulator");
+        if (pool_.intersection != Intersection::Single && stream_rays > RayStream<Scalar>::kMostRays)
+            throw InputError(fmt::format("--pool-rays, --pool-batch: a stream has at most {} rays, got {}",
+                                         RayStream<Scalar>::kMostRays, stream_rays));
         accumulator_ = make_accumulator<Scalar>(pool_.accumulator, framebuffer_, settings_.threads);
         context_.accumulator = accumulator_.get();
     }

@@ -29,11 +29,11 @@ struct SettingWords<StageWidth> {
 };
 template <>
 struct SettingWords<Intersection> {
-    static constexpr std::array kWords{"single", "stream"};
+    static constexpr std::array kWords{"single", "stream", "pairs"};
 };
 template <>
 struct SettingWords<CameraStage> {
-    static constexpr std::array kWords{"staged", "fused"};
+    static constexpr std::array kWords{"staged", "fused", "beam"};
 };
 template <>
 struct SettingWords<Sort> {

@@ -16,11 +16,13 @@ enum class Refill : std::uint8_t { Drain, Regenerate };
 /// How many rays a stage treats at a time.
 enum class StageWidth : std::uint8_t { Scalar, Simd };
 
-/// How the closest hits of a batch are found: ray by ray, or as a stream.
-enum class Intersection : std::uint8_t { Single, Stream };
+/// How the closest hits of a batch are found: ray by ray; as a stream, a register of rays against one shape; or as a
+/// stream that collects the pairs of rays and spheres which may meet, and tests registers full of them.
+enum class Intersection : std::uint8_t { Single, Stream, Pairs };
 
-/// How camera rays enter: written to the pool as they are, or traced and shaded in registers first, survivors only.
-enum class CameraStage : std::uint8_t { Staged, Fused };
+/// How camera rays enter: written to the pool as they are; or traced and shaded in registers first, survivors only, a
+/// register of them at a time or in beams of some registers.
+enum class CameraStage : std::uint8_t { Staged, Fused, Beam };
 
 /// Order of the records before they are shaded.
 enum class Sort : std::uint8_t { None, Material };
@@ -55,8 +57,8 @@ struct PoolSettings {
     PoolScope scope = PoolScope::PerThread;
     Refill refill = Refill::Regenerate;
     StageWidth width = StageWidth::Simd;
-    Intersection intersection = Intersection::Stream;
-    CameraStage camera = CameraStage::Fused;
+    Intersection intersection = Intersection::Pairs;
+    CameraStage camera = CameraStage::Beam;
     Sort sort = Sort::None;
     Append append = Append::InPlace;
     Accumulator accumulator = Accumulator::OwnedInt64;

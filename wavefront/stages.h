@@ -13,7 +13,7 @@
 #include "core/shade.h"
 #include "wavefront/accumulator.h"
 #include "wavefront/camera_paths.h"
-#include "wavefront/packet.h"
+#include "wavefront/beam.h"
 #include "wavefront/ray_record.h"
 #include "wavefront/round_log.h"
 #include "wavefront/stream.h"
@@ -47,7 +47,7 @@ class Stages {
           sort_scratch_(context.pool.sort == Sort::None ? 0 : most_records),
           converter_(context.fixed),
           log_(context.settings, thread) {
-        deposits_.reserve(std::max(most_records, kMostDeposits) + 2 * kRays);
+        deposits_.reserve(std::max(most_records, kMostDeposits) + kBeamRays + kRays);
     }
 
     /// The memory of one of these.
@@ -55,7 +55,7 @@ class Stages {
         return RayStream<Scalar>::bytes(most_records, tree_depth(context)) +
                Records::bytes(splitting == Splitting::On ? most_records : 0) +
                (context.pool.sort == Sort::None ? 0 : most_records * sizeof(double)) +
-               Deposits<Scalar>::bytes(std::max(most_records, kMostDeposits) + 2 * kRays);
+               Deposits<Scalar>::bytes(std::max(most_records, kMostDeposits) + kBeamRays + kRays);
     }
 
     /// A unit of the render begins: what report() says is of this unit.
@@ -77,18 +77,13 @@ class Stages {
         const std::size_t end = first + count;
         std::size_t written = 0;
         while (!paths.is_done()) {
-            const CameraLanes<Real> lanes = paths.template next<Real>(kRays);
-            const RayRecord<Real> record = camera_record(lanes);
-            const unsigned active = (1U << lanes.count) - 1;
             if (context_.pool.camera == CameraStage::Staged) {
-                records.template append<Real>(first + written, record, active, end);
+                const CameraLanes<Real> lanes = paths.template next<Real>(kRays);
+                records.template append<Real>(first + written, camera_record(lanes), (1U << lanes.count) - 1, end);
                 written += static_cast<std::size_t>(lanes.count);
-                continue;
+            } else {
+                written += first_bounce(records, first + written, end, paths);
             }
-            const Hit<Real> hit = closest_hits<needs, Real>(context_.scene, record.ray, lanes.is_active(), work_);
-            segments_ += lanes.count;
-            written += shade(records, first + written, end, record, hit, active);
-            if (deposits_.count() > kMostDeposits) accumulate();
         }
         accumulate();
         log_.stop(Stage::Generate, count);
@@ -121,10 +116,10 @@ class Stages {
 
     /// Finds the closest hits of records [first, first + count), which then lie in stream().
     void intersect(const Records& records, std::size_t first, std::size_t count) {
-        if (context_.pool.intersection == Intersection::Stream) {
-            intersect_stream(records, first, count);
-        } else {
+        if (context_.pool.intersection == Intersection::Single) {
             intersect_single(records, first, count);
+        } else {
+            intersect_stream(records, first, count);
         }
     }
 
@@ -135,7 +130,7 @@ class Stages {
             const std::int32_t id = stream_.primitive_id()[i];
             if (id < 0) return kKinds - 1;
             const auto& row = context_.scene.surfaces[static_cast<std::size_t>(id)];
-            return static_cast<std::size_t>(row.value[SurfaceRow<Scalar>::kMaterial]);
+            return static_cast<std::size_t>(SurfaceCode<int>{static_cast<int>(row.value[SurfaceRow<Scalar>::kCode])}.material());
         };
         std::size_t place[kKinds + 1] = {};
         for (std::size_t i = 0; i < count; ++i) ++place[kind(i) + 1];
@@ -227,7 +222,7 @@ class Stages {
     static constexpr std::size_t kMostDeposits = 1024;  ///< kept back in the fused camera stage; fits into the L1 cache
 
     static int tree_depth(const RenderContext<Scalar>& context) {
-        return std::max(context.scene.sphere_stream_tree.depth, context.scene.quad_stream_tree.depth);
+        return std::max(context.scene.sphere_tree.depth, context.scene.quad_tree.depth);
     }
 
     RAYPOOL_INLINE RayRecord<Real> camera_record(const CameraLanes<Real>& lanes) const {
@@ -239,6 +234,41 @@ class Stages {
         record.leaving_id = Uint32<Real>(static_cast<std::uint32_t>(kNoPrimitive));
         record.step = Uint32<Real>(0U);
         return record;
+    }
+
+    /// Takes the next camera rays, of one register or of a beam, through their first bounce. Returns the survivors.
+    RAYPOOL_INLINE std::size_t first_bounce(Records& records, std::size_t target, std::size_t end, CameraPaths& paths) {
+        constexpr int kPackets = Simd<Real> ? kBeamPackets<Real> : 1;
+        RayRecord<Real> record[kPackets];
+        WideRays<Real> rays[kPackets];
+        Hit<Real> hit[kPackets];
+        unsigned active[kPackets];
+        const int most = context_.pool.camera == CameraStage::Beam ? kPackets : 1;
+        int packets = 0;
+        int count = 0;
+        for (; packets < most && !paths.is_done(); ++packets) {
+            const CameraLanes<Real> lanes = paths.template next<Real>(kRays);
+            count += lanes.count;
+            active[packets] = (1U << lanes.count) - 1;
+            record[packets] = camera_record(lanes);
+            rays[packets] = wide_camera_rays<Real>(record[packets].ray);
+        }
+        if constexpr (Simd<Real>) {
+            if (most > 1) {
+                closest_hits<needs, Real>(context_.scene, rays, hit, packets, count, work_);
+            } else {
+                hit[0] = closest_hits<needs, Real>(context_.scene, rays[0],
+                                                   lanes_before<Real>(static_cast<std::size_t>(count)), work_);
+            }
+        } else {
+            hit[0] = closest_hits<needs, Real>(context_.scene, rays[0], true, work_);
+        }
+        segments_ += count;
+        std::size_t written = 0;
+        for (int p = 0; p < packets; ++p)
+            written += shade(records, target + written, end, record[p], hit[p], active[p]);
+        if (deposits_.count() > kMostDeposits) accumulate();
+        return written;
     }
 
     /// Ends paths that left or met an emitter, scatters the others, and appends those that go on.
@@ -328,18 +358,39 @@ class Stages {
         if constexpr (!Simd<Real>) {
             intersect_single(records, first, count);  // a stream of one lane is a single ray
         } else {
+            const bool has_pairs = context_.pool.intersection == Intersection::Pairs;
             for (std::size_t i = 0; i < count; i += kRays) {
                 const RayRecord<Real> record = records.template load<Real>(first + i);
                 const WideRays<Real> rays = wide_rays<Real>(record.ray, record.leaving_id);
+                const auto lanes = static_cast<int>(std::min<std::size_t>(kRays, count - i));
                 Hit<Real> hit;
-                intersect_large<needs, Real>(context_.scene, rays,
-                                             static_cast<int>(std::min<std::size_t>(kRays, count - i)), hit, work_);
+                if constexpr (needs.flat) intersect_all<needs>(context_.scene.planes, rays, lanes, hit, work_);
+                if (!has_pairs) intersect_all<needs>(context_.scene.large_spheres, rays, lanes, hit, work_);
                 store_row(i, rays, hit);
             }
+            if (has_pairs) {
+                for (const auto& block : context_.scene.large_spheres) pair_with_all(block, records, first, count);
+            }
             if constexpr (needs.flat)
-                detail::walk_stream<needs, Real>(context_.scene.quad_stream_tree, stream_, count, work_);
-            detail::walk_stream<needs, Real>(context_.scene.sphere_stream_tree, stream_, count, work_);
+                detail::walk_stream<needs, Real>(context_.scene.quad_tree, stream_, count, context_.pool.intersection,
+                                                 work_);
+            detail::walk_stream<needs, Real>(context_.scene.sphere_tree, stream_, count, context_.pool.intersection,
+                                             work_);
         }
+    }
+
+    /// Spheres that every ray tests.
+    void pair_with_all(const auto& block, const Records& records, std::size_t first, std::size_t count)
+    requires Simd<Real> {
+        SpherePairs<Scalar> pairs(block, stream_.lists());
+        for (std::size_t i = 0; i < count; i += kRays) {
+            const RayRecord<Real> record = records.template load<Real>(first + i);
+            const unsigned valid = count - i >= kRays ? (1U << kRays) - 1 : (1U << (count - i)) - 1;
+            const Uint32<Real> ray = lane_numbers<Real>() + Uint32<Real>(static_cast<std::uint32_t>(i));
+            pairs.template find<needs, Real>(record.ray, signed_ids<Real>(record.leaving_id),
+                                             ray * Uint32<Real>(RayRow<Scalar>::kColumns), valid, work_);
+        }
+        pairs.template meet<needs, InBox::No, Real>({stream_.rows(), stream_.distance(), stream_.primitive_id()});
     }
 
     RAYPOOL_INLINE void store_row(std::size_t i, const WideRays<Real>& rays, const Hit<Real>& hit) requires Simd<Real> {
@@ -351,11 +402,11 @@ class Stages {
         const Real column[12] = {rays.ray.origin[0],
                                  rays.ray.origin[1],
                                  rays.ray.origin[2],
-                                 hit.t,
+                                 to_real<Real>(rays.leaving_id),
                                  scale[0],
                                  scale[1],
                                  scale[2],
-                                 to_real<Real>(rays.leaving_id),
+                                 hit.t,
                                  rays.ray.direction[0],
                                  rays.ray.direction[1],
                                  rays.ray.direction[2],

@@ -1,79 +1,88 @@
 /// Stream traversal: a whole list of rays goes down the tree together, and is filtered at every node.
 ///
 /// After Barringer and Akenine-Moeller, "Dynamic Ray Stream Traversal", SIGGRAPH 2014. A visit to a node takes the list
-/// of rays that entered it, a register's worth at a time, tests each child's box against them, and appends the indices
-/// of those that enter to the child's list. Incoherent rays so fill whole registers as long as lists are long, which is
-/// what a pool is for. Rays are read as rows, so that any sixteen of them can be fetched by transposing.
+/// of rays that entered it, a register's worth at a time, tests each child's box against them, and appends those that
+/// enter to the child's list. Incoherent rays so fill whole registers as long as lists are long, which is what a pool
+/// is for; where a list has become short, its rays go on one by one, each against a register of boxes. Rays are read as
+/// rows, so that any sixteen of them can be fetched by transposing. A list holds where rows begin, in scalars.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
-#include "wavefront/wide_rays.h"
+#include "wavefront/settings.h"
+#include "wavefront/sphere_pairs.h"
 
 namespace raypool::wavefront {
-
-/// A ray as the traversal reads it: 12 scalars. Integers are kept as the bits of a scalar.
-template <class Scalar>
-struct alignas(16) RayRow {
-    enum Column { kOrigin = 0, kDistance = 3, kScale = 4, kLeaving = 7, kDirection = 8, kTime = 11, kColumns = 12 };
-    Scalar value[kColumns];  ///< kDistance: of the closest hit so far; kScale: 1 / direction
-};
 
 /// Scratch of one thread for streams of up to `capacity` rays, and the hits they found.
 template <class Scalar>
 class RayStream {
   public:
+    /// More rays than this have no numbers for their pairs with shapes (SpherePairs).
+    static constexpr std::size_t kMostRays = SpherePairs<Scalar>::kMostRays;
+
     RayStream(std::size_t capacity, int tree_depth)
         : rows_(capacity + kLanesMost),
           distance_(capacity + kLanesMost),
           primitive_id_(capacity + kLanesMost),
-          lists_((capacity + kLanesMost) * (1 + kStreamTreeWidth * static_cast<std::size_t>(tree_depth))) {}
+          lists_(std::make_unique_for_overwrite<std::uint32_t[]>(list_size(capacity, tree_depth))) {}
 
     static std::size_t bytes(std::size_t capacity, int tree_depth) {
-        const std::size_t lists = 1 + kStreamTreeWidth * static_cast<std::size_t>(tree_depth);
-        return (capacity + kLanesMost) *
-               (sizeof(RayRow<Scalar>) + sizeof(Scalar) + sizeof(std::uint32_t) * (1 + lists));
+        return (capacity + kLanesMost) * (sizeof(RayRow<Scalar>) + sizeof(Scalar) + sizeof(std::int32_t)) +
+               list_size(capacity, tree_depth) * sizeof(std::uint32_t);
     }
 
     RayRow<Scalar>* rows() { return rows_.data(); }
     Scalar* distance() { return distance_.data(); }
     std::int32_t* primitive_id() { return primitive_id_.data(); }
-    std::uint32_t* lists() { return lists_.data(); }
+    std::uint32_t* lists() { return lists_.get(); }
 
   private:
     static constexpr std::size_t kLanesMost = 16;
+    /// The list at the root, one for each child of a node on the way down, and a leaf's pairs.
+    static std::size_t list_size(std::size_t capacity, int tree_depth) {
+        return (capacity + kLanesMost) * (1 + kTreeWidth<Scalar> * (1 + static_cast<std::size_t>(tree_depth)));
+    }
+
     std::vector<RayRow<Scalar>> rows_;
     std::vector<Scalar> distance_;
     std::vector<std::int32_t> primitive_id_;
-    std::vector<std::uint32_t> lists_;
+    std::unique_ptr<std::uint32_t[]> lists_;
 };
 
 namespace detail {
+
+/// Lists shorter than this are walked ray by ray. Measured: 8 to 16 are equal (docs/pool.md).
+inline constexpr std::size_t kShortList = 12;
 
 template <SceneNeeds needs, class Real, class Tree, class Work>
 class StreamWalk {
     using S = ScalarOf<Real>;
     using Row = RayRow<S>;
     static constexpr int kRays = kLanes<Real>;
-    static constexpr int kWidth = kStreamTreeWidth;
+    static constexpr int kWidth = kTreeWidth<S>;
     static constexpr std::int32_t kLargestId = std::numeric_limits<std::int32_t>::max();
 
   public:
-    StreamWalk(const Tree& tree, RayStream<S>& stream, Work& work)
+    StreamWalk(const Tree& tree, RayStream<S>& stream, Intersection intersection, Work& work)
         : tree_(tree),
-          rows_(stream.rows()),
-          distance_(stream.distance()),
-          primitive_id_(stream.primitive_id()),
+          hits_{stream.rows(), stream.distance(), stream.primitive_id()},
+          intersection_(intersection),
           work_(work) {}
 
     /// Takes list[0 .. count), which has room for a register beyond its end; `free` is scratch behind it.
     void visit(std::int32_t child, std::uint32_t* list, std::size_t count, std::uint32_t* free) {
-        // The tail of the last register repeats the last ray: testing a ray twice changes nothing.
+        if (count < kShortList) {
+            for (std::size_t i = 0; i < count; ++i) walk_single(child, list[i]);
+            return;
+        }
+        // The tail of the last register repeats the last ray, so that there are rows to load.
         for (std::size_t i = count; i < count + kRays; ++i) list[i] = list[count - 1];
         if (child < 0) {
-            visit_leaf(tree_.blocks[static_cast<std::size_t>(~child)], list, count);
+            visit_leaf(tree_.blocks[static_cast<std::size_t>(~child)], list, count, free);
         } else {
             visit_node(tree_.nodes[static_cast<std::size_t>(child)], list, count, free);
         }
@@ -82,61 +91,66 @@ class StreamWalk {
   private:
     void visit_node(const WideNode<S, kWidth>& node, const std::uint32_t* list, std::size_t count,
                     std::uint32_t* free) {
-        const std::size_t room = count + kRays;  // a register is stored whole behind the last index
-        std::size_t filled[kWidth] = {};
+        const std::size_t room = count + kRays;  // a register is stored whole behind the last ray
+        std::uint32_t* end[kWidth];
+        for (int i = 0; i < kWidth; ++i) end[i] = free + static_cast<std::size_t>(i) * room;
         for (std::size_t first = 0; first < count; first += kRays) {
             Real row[8];
-            load_row_block<8>(list + first, row);
+            load_rows_at<8, Real>(hits_.rows->value, list + first, row);
             WideRays<Real> rays;
-            for (int i = 0; i < 3; ++i) {
-                rays.ray.origin[i] = row[Row::kOrigin + i];
-                rays.inverse.near_scale[i] = row[Row::kScale + i] * Real(1 - kBoxSlack<S>);
-                rays.inverse.far_scale[i] = row[Row::kScale + i] * Real(1 + kBoxSlack<S>);
-                rays.inverse.is_negative[i] = copysign(Real(1), row[Row::kScale + i]) < Real(0);
+            rays.ray.origin = columns(row, Row::kOrigin);
+            rays.inverse = inverse_of_scale<Real>(columns(row, Row::kScale));
+            Real limit = row[Row::kDistance];
+            unsigned valid = (1U << kRays) - 1;
+            if (first + kRays > count) [[unlikely]] {
+                valid = (1U << (count - first)) - 1;
+                limit = select(lanes_before<Real>(count - first), limit, Real(-1));  // enters no box
             }
-            const unsigned valid = first + kRays <= count ? (1U << kRays) - 1 : (1U << (count - first)) - 1;
-            const Uint32<Real> index(list + first, stdx::element_aligned);
+            const Uint32<Real> offset(list + first, stdx::element_aligned);
             for (int i = 0; i < kWidth; ++i) {
-                const Interval<Real> inside = child_interval<Real>(node, i, rays, row[Row::kDistance]);
-                const unsigned bits = mask_bits(inside.enter <= inside.exit) & valid;
+                const Interval<Real> inside = child_interval<Real>(node, i, rays, limit);
+                const unsigned bits = mask_bits(inside.enter <= inside.exit);
                 work_.count_boxes(node, i, valid);
-                compress_store(free + static_cast<std::size_t>(i) * room + filled[i], index, bits);
-                filled[i] += static_cast<std::size_t>(std::popcount(bits));
+                compress_store(end[i], offset, bits);
+                end[i] += std::popcount(bits);
             }
         }
 
         // Nearest child first, as the first ray of the list sees it.
-        const Row& ray = rows_[list[0]];
+        const S* ray = hits_.rows->value + list[0];
         int order[kWidth];
         S place[kWidth];
         for (int i = 0; i < kWidth; ++i) {
             place[i] = 0;
             for (int axis = 0; axis < 3; ++axis)
-                place[i] += (node.bounds[axis][0][i] + node.bounds[axis][1][i]) * ray.value[Row::kDirection + axis];
+                place[i] += (node.bounds[axis][0][i] + node.bounds[axis][1][i]) * ray[Row::kDirection + axis];
             int k = i;
             for (; k > 0 && place[order[k - 1]] > place[i]; --k) order[k] = order[k - 1];
             order[k] = i;
         }
         for (const int i : order) {
-            if (filled[i] == 0) continue;
-            visit(node.child[i], free + static_cast<std::size_t>(i) * room, filled[i], free + kWidth * room);
+            std::uint32_t* const begin = free + static_cast<std::size_t>(i) * room;
+            if (end[i] != begin)
+                visit(node.child[i], begin, static_cast<std::size_t>(end[i] - begin), free + kWidth * room);
         }
     }
 
     template <class Block>
-    void visit_leaf(const Block& block, const std::uint32_t* list, std::size_t count) {
+    void visit_leaf(const Block& block, const std::uint32_t* list, std::size_t count, std::uint32_t* free) {
+        if constexpr (requires { block.radius; }) {
+            if (intersection_ == Intersection::Pairs) {
+                SpherePairs<S> pairs(block, free);
+                pairs.template find_in_list<needs, Real>(hits_.rows, list, count, work_);
+                pairs.template meet<needs, InBox::Yes, Real>(hits_);
+                return;
+            }
+        }
         for (std::size_t first = 0; first < count; first += kRays) {
             Real row[Row::kColumns];
-            load_row_block<Row::kColumns>(list + first, row);
+            load_rows_at<Row::kColumns, Real>(hits_.rows->value, list + first, row);
             WideRays<Real> rays;
-            for (int i = 0; i < 3; ++i) {
-                rays.ray.origin[i] = row[Row::kOrigin + i];
-                rays.ray.direction[i] = row[Row::kDirection + i];
-                rays.inverse.near_scale[i] = row[Row::kScale + i] * Real(1 - kBoxSlack<S>);
-                rays.inverse.far_scale[i] = row[Row::kScale + i] * Real(1 + kBoxSlack<S>);
-                rays.inverse.is_negative[i] = copysign(Real(1), row[Row::kScale + i]) < Real(0);
-            }
-            rays.ray.time = row[Row::kTime];
+            rays.ray = {columns(row, Row::kOrigin), columns(row, Row::kDirection), row[Row::kTime]};
+            rays.inverse = inverse_of_scale<Real>(columns(row, Row::kScale));
             rays.leaving_id = to_int<Real>(row[Row::kLeaving]);
             Hit<Real> hit;
             hit.t = row[Row::kDistance];
@@ -148,34 +162,40 @@ class StreamWalk {
             });
             for (unsigned bits = mask_bits(is_improved); bits != 0; bits &= bits - 1) {
                 const int i = std::countr_zero(bits);
-                const std::uint32_t ray = list[first + static_cast<std::size_t>(i)];
-                const auto id = static_cast<std::int32_t>(lane(hit.primitive_id, i));
-                if (lane(hit.t, i) == distance_[ray] && primitive_id_[ray] < id) continue;
-                rows_[ray].value[Row::kDistance] = distance_[ray] = lane(hit.t, i);
-                primitive_id_[ray] = id;
+                const std::uint32_t ray = list[first + static_cast<std::size_t>(i)] / Row::kColumns;
+                hits_.keep_closer(ray, lane(hit.t, i), static_cast<std::int32_t>(lane(hit.primitive_id, i)));
             }
         }
     }
 
-    template <int count>
-    RAYPOOL_INLINE void load_row_block(const std::uint32_t* list, Real* row) const {
-        const Uint32<Real> index(list, stdx::element_aligned);
-        load_rows<count, Real>(rows_->value, Row::kColumns, stdx::static_simd_cast<Int<Real>>(index), row);
+    /// One ray from `child` down, against a register of boxes or shapes at a time.
+    [[gnu::noinline]] void walk_single(std::int32_t child, std::uint32_t offset) {
+        using Boxes = Wide<S, kWidth>;
+        const std::uint32_t i = offset / Row::kColumns;
+        const S* row = hits_.rows[i].value;
+        const Ray<S> ray{columns(row, Row::kOrigin), columns(row, Row::kDirection), row[Row::kTime]};
+        const SpreadRay<Boxes> spread(ray, inverse_of_scale<S>(columns(row, Row::kScale)),
+                                      static_cast<std::int32_t>(row[Row::kLeaving]));
+        Hit<S> hit{hits_.distance[i], hits_.primitive_id[i]};
+        raypool::detail::walk<needs, Boxes>(tree_, spread, hit, work_, child);
+        hits_.set(i, hit.t, static_cast<std::int32_t>(hit.primitive_id));
     }
 
     const Tree& tree_;
-    Row* rows_;
-    S* distance_;
-    std::int32_t* primitive_id_;
+    StreamHits<S> hits_;
+    Intersection intersection_;
     Work& work_;
 };
 
 template <SceneNeeds needs, class Real, class Tree, class Work>
-void walk_stream(const Tree& tree, RayStream<ScalarOf<Real>>& stream, std::size_t count, Work& work) {
+void walk_stream(const Tree& tree, RayStream<ScalarOf<Real>>& stream, std::size_t count, Intersection intersection,
+                 Work& work) {
     if (tree.nodes.empty() || count == 0) return;
+    using Row = RayRow<ScalarOf<Real>>;
     std::uint32_t* list = stream.lists();
-    for (std::size_t i = 0; i < count; ++i) list[i] = static_cast<std::uint32_t>(i);
-    StreamWalk<needs, Real, Tree, Work>(tree, stream, work).visit(0, list, count, list + count + kLanes<Real>);
+    for (std::size_t i = 0; i < count; ++i) list[i] = static_cast<std::uint32_t>(i * Row::kColumns);
+    StreamWalk<needs, Real, Tree, Work>(tree, stream, intersection, work)
+        .visit(0, list, count, list + count + kLanes<Real>);
 }
 
 }  // namespace detail

@@ -18,12 +18,20 @@ struct WideRays {
     Int<Real> leaving_id;
 };
 
-/// Of rays as a record keeps them: the primitive left is an unsigned number.
+/// Primitive ids as a record keeps them, in unsigned numbers, as the kernels compare them.
+template <Simd Real>
+RAYPOOL_INLINE Int<Real> signed_ids(const Uint32<Real>& ids) {
+    using Signed = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
+    return stdx::static_simd_cast<Int<Real>>(stdx::static_simd_cast<Signed>(ids));
+}
+/// Camera rays, which start on nothing.
+template <class Real>
+RAYPOOL_INLINE WideRays<Real> wide_camera_rays(const Ray<Real>& ray) {
+    return {ray, ray_inverse<Real>(ray.direction), Int<Real>(kNoPrimitive)};
+}
 template <Simd Real>
 RAYPOOL_INLINE WideRays<Real> wide_rays(const Ray<Real>& ray, const Uint32<Real>& leaving_id) {
-    using Signed = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
-    return {ray, ray_inverse<Real>(ray.direction),
-            stdx::static_simd_cast<Int<Real>>(stdx::static_simd_cast<Signed>(leaving_id))};
+    return {ray, ray_inverse<Real>(ray.direction), signed_ids<Real>(leaving_id)};
 }
 
 /// Takes the hits at `t` of primitive `id` that are closer than the closest so far.
@@ -98,20 +106,16 @@ RAYPOOL_INLINE void for_each_shape(const Block& block, Visit visit) {
     for (int lane = 0; lane < Block::kLanes && block.id[lane] != kNoPrimitive; ++lane) visit(lane);
 }
 
-/// The shapes outside the trees. `count` is the number of lanes that matter, for the account of tests.
-template <SceneNeeds needs, class Real, class Work>
-RAYPOOL_INLINE void intersect_large(const CompiledScene<ScalarOf<Real>>& scene, const WideRays<Real>& rays, int count,
-                                    Hit<Real>& hit, Work& work) {
-    const auto test = [&](const auto& blocks) {
-        for (const auto& block : blocks) {
-            for_each_shape(block, [&](int lane) {
-                work.count_primitives(count);
-                intersect_lane<needs, InBox::No, Real>(block, lane, rays, hit);
-            });
-        }
-    };
-    test(scene.large_spheres);
-    if constexpr (needs.flat) test(scene.planes);
+/// Shapes that are in no tree. `count` is the number of lanes that matter, for the account of tests.
+template <SceneNeeds needs, class Blocks, class Real, class Work>
+RAYPOOL_INLINE void intersect_all(const Blocks& blocks, const WideRays<Real>& rays, int count, Hit<Real>& hit,
+                                  Work& work) {
+    for (const auto& block : blocks) {
+        for_each_shape(block, [&](int lane) {
+            work.count_primitives(count);
+            intersect_lane<needs, InBox::No, Real>(block, lane, rays, hit);
+        });
+    }
 }
 
 /// Where the rays are inside child `lane` of a node, before `limit`.

@@ -28,7 +28,7 @@ struct Pair {
     Accumulator planar;
 };
 std::vector<Pair> pairs() {
-    return {{"a pool for each thread", rung_settings("fused", 1), Accumulator::OwnedPlanarInt64},
+    return {{"a pool for each thread", rung_settings("beam", 1), Accumulator::OwnedPlanarInt64},
             {kSharedPool, rung_settings("shared-stream", 1), Accumulator::AtomicPlanarInt64}};
 }
 PoolSettings in_layout(const Pair& pair, const char* layout) {

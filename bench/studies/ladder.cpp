@@ -29,7 +29,7 @@ constexpr std::array<const char*, 9> kParts{"generate_s", "intersect_s", "shade_
                                             "traffic_s",  "append_s",    "barrier_s", "end_s"};
 constexpr const char* kRecursive = "recursive";
 constexpr const char* kCanonical = "shared-stream";
-constexpr const char* kFastest = "fused";
+constexpr const char* kFastest = "beam";
 constexpr bool kIsAvx512 = stdx::native_simd<float>::size() == 16;
 
 /// Seconds of a stage, all threads and rounds.

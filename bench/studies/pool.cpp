@@ -38,7 +38,7 @@ std::vector<Line> lines() {
     lines.push_back({"shared, regenerate", wide});
     lines.push_back({"thread, drain", rung_settings("thread-small", 1)});
     lines.push_back({"thread, regenerate", rung_settings("regenerate", 1)});
-    lines.push_back({kFastestPool, rung_settings("fused", 1)});
+    lines.push_back({kFastestPool, rung_settings("beam", 1)});
     return lines;
 }
 

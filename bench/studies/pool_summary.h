@@ -8,7 +8,7 @@ namespace raypool::studies {
 /// Pools that findings speak of.
 inline constexpr const char* kPaperPool = "the paper's pool";
 inline constexpr const char* kWidePool = "shared, drain";
-inline constexpr const char* kFastestPool = "thread, regenerate, fused";
+inline constexpr const char* kFastestPool = "thread, regenerate, beam";
 
 Summary summarise_pool(const Table& data);
 

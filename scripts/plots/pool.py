@@ -7,7 +7,8 @@ BLUE, ORANGE, GREEN, RED, SKY, PINK, BLACK, YELLOW = COLOURS
 
 # Colour says whose the pool is, the shape of the marker and the line when camera rays enter.
 STYLES = {
-    "thread, regenerate, fused": {"color": "#004C78", "marker": "*", "linestyle": "-"},
+    "thread, regenerate, beam": {"color": "#004C78", "marker": "*", "linestyle": "-"},
+    "thread, regenerate, fused": {"color": "#004C78", "marker": "*", "linestyle": "-"},  # the fastest of runs before beams
     "thread, regenerate": {"color": BLUE, "marker": "o", "linestyle": "-"},
     "thread, drain": {"color": SKY, "marker": "s", "linestyle": "--"},
     "shared, regenerate": {"color": RED, "marker": "^", "linestyle": "-"},

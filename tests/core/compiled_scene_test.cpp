@@ -58,24 +58,18 @@ void count_ids(const Blocks& blocks, std::vector<int>& uses) {
             if (id != kNoPrimitive) ++uses.at(static_cast<std::size_t>(id));
 }
 
-TEST(Compile, KeepsEveryShapeInOneBlockOfEachKindOfTree) {
+TEST(Compile, KeepsEveryShapeInOneBlock) {
     for (const std::string& name : builtin_scene_names()) {
         const Scene scene = builtin_scene(name);
         const CompiledScene<float> compiled = compile<float>(scene);
         const std::size_t shape_count = scene.spheres.size() + scene.quads.size() + scene.planes.size();
         EXPECT_EQ(compiled.surfaces.size(), shape_count);
-        std::vector<int> single(shape_count);
-        std::vector<int> stream(shape_count);
-        for (std::vector<int>* uses : {&single, &stream}) {
-            count_ids(compiled.large_spheres, *uses);
-            count_ids(compiled.planes, *uses);
-        }
-        count_ids(compiled.sphere_tree.blocks, single);
-        count_ids(compiled.quad_tree.blocks, single);
-        count_ids(compiled.sphere_stream_tree.blocks, stream);
-        count_ids(compiled.quad_stream_tree.blocks, stream);
-        EXPECT_EQ(single, std::vector<int>(shape_count, 1)) << name;
-        EXPECT_EQ(stream, std::vector<int>(shape_count, 1)) << name;
+        std::vector<int> uses(shape_count);
+        count_ids(compiled.large_spheres, uses);
+        count_ids(compiled.planes, uses);
+        count_ids(compiled.sphere_tree.blocks, uses);
+        count_ids(compiled.quad_tree.blocks, uses);
+        EXPECT_EQ(uses, std::vector<int>(shape_count, 1)) << name;
     }
 }
 
@@ -121,7 +115,6 @@ TEST(Compile, BoundsMovingSpheresAtEveryTime) {
         const CompiledScene<float> scene = compile<float>(cloud(1000, 1, translation, 3));
         ASSERT_GT(scene.sphere_tree.nodes.size(), 10U);
         check_bounds(scene.sphere_tree, 0, times);
-        check_bounds(scene.sphere_stream_tree, 0, times);
     }
 }
 

@@ -56,11 +56,12 @@ std::vector<Knobs> matrix(const RenderSettings& base, std::int64_t whole) {
                  {std::int64_t{1}, std::int64_t{15}, std::int64_t{17}, std::int64_t{1000}, std::int64_t{8192}, whole})
                 for (const Refill refill : {Refill::Drain, Refill::Regenerate})
                     for (const Sort sort : {Sort::None, Sort::Material})
-                        for (const CameraStage camera : {CameraStage::Staged, CameraStage::Fused})
+                        for (const CameraStage camera : {CameraStage::Staged, CameraStage::Fused, CameraStage::Beam})
                             for (const auto& [width, intersection] :
                                  {std::pair{StageWidth::Scalar, Intersection::Single},
                                   std::pair{StageWidth::Simd, Intersection::Single},
-                                  std::pair{StageWidth::Simd, Intersection::Stream}}) {
+                                  std::pair{StageWidth::Simd, Intersection::Stream},
+                                  std::pair{StageWidth::Simd, Intersection::Pairs}}) {
                                 Knobs knobs{base, {}};
                                 knobs.settings.threads = threads;
                                 knobs.settings.schedule = schedule;

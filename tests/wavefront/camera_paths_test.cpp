@@ -49,7 +49,6 @@ void drain(CameraPaths paths, RandomInputs& random, std::vector<Path>& out) {
         ASSERT_GE(lanes.count, 1);
         ASSERT_LE(lanes.count, std::min(most, kLanes<Real>));
         ASSERT_EQ(paths.left(), left - lanes.count);
-        ASSERT_EQ(mask_bits(lanes.is_active()), (1U << lanes.count) - 1);
         for (int i = 0; i < lanes.count; ++i)
             out.emplace_back(lane(lanes.x, i), lane(lanes.y, i), lane(lanes.pixel, i), lane(lanes.sample, i));
     }

@@ -84,7 +84,7 @@ TEST_P(Report, CountsTheSegmentsOfRecursionAndItsRoundsAddUpToThem) {
             EXPECT_EQ(report.segments(), expected.report.segments());
             EXPECT_EQ(report.paths(), 2 * scene.pixel_count());
 
-            const std::int64_t in_registers = variant.pool.camera == CameraStage::Fused ? report.paths() : 0;
+            const std::int64_t in_registers = variant.pool.camera != CameraStage::Staged ? report.paths() : 0;
             EXPECT_EQ(sum(report, &RoundWork::records_in), report.segments() - in_registers);
             EXPECT_LE(sum(report, &RoundWork::records_out), sum(report, &RoundWork::records_in));
             for (const RoundWork& round : report.rounds) {
@@ -164,7 +164,7 @@ TEST(RoundsReport, NeedsNoCountingOfWork) {
     for (const Variant& variant : variants()) {
         SCOPED_TRACE(variant.name);
         const RenderReport got = render_pool(scene, settings, variant.pool).report;
-        const std::int64_t in_registers = variant.pool.camera == CameraStage::Fused ? got.paths() : 0;
+        const std::int64_t in_registers = variant.pool.camera != CameraStage::Staged ? got.paths() : 0;
         EXPECT_EQ(sum(got, &RoundWork::records_in), got.segments() - in_registers);
         EXPECT_EQ(got.total(&ThreadWork::box_tests) + got.total(&ThreadWork::primitive_tests), 0);
     }
@@ -244,7 +244,7 @@ TEST(DeepPaths, EndInASmallPoolOfEitherScopeInTheMemoryOfShallowOnes) {
         EXPECT_EQ(deep.report.pool_bytes, shallow.report.pool_bytes);
         EXPECT_LT(deep.report.pool_bytes, 1U << 20U);
         EXPECT_LE(deep.report.rounds.size(), 4096U) << "one figure for each round would grow with the depth";
-        const std::int64_t in_registers = pool.camera == CameraStage::Fused ? scene.pixel_count() : 0;
+        const std::int64_t in_registers = pool.camera != CameraStage::Staged ? scene.pixel_count() : 0;
         EXPECT_EQ(sum(deep.report, &RoundWork::records_in), deep.report.segments() - in_registers);
     }
 }

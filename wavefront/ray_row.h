@@ -1,0 +1,41 @@
+/// A ray as streams read it: a row of 12 scalars, so that any sixteen rays can be fetched by transposing.
+#pragma once
+
+#include <cstdint>
+
+#include "wavefront/wide_rays.h"
+
+namespace raypool::wavefront {
+
+/// Integers are kept as the value of a scalar.
+template <class Scalar>
+struct alignas(16) RayRow {
+    enum Column { kOrigin = 0, kLeaving = 3, kScale = 4, kDistance = 7, kDirection = 8, kTime = 11, kColumns = 12 };
+    Scalar value[kColumns];  ///< kScale: 1 / direction; kDistance: of the closest hit so far
+};
+
+/// What streams find and update: a row a ray, and apart from it, in the order of the rays, their hits.
+template <class Scalar>
+struct StreamHits {
+    RayRow<Scalar>* rows;
+    Scalar* distance;
+    std::int32_t* primitive_id;
+
+    /// Takes a hit that is closer than the ray's closest so far, or as close and of a smaller id.
+    RAYPOOL_INLINE void keep_closer(std::uint32_t ray, Scalar t, std::int32_t id) const {
+        if (t > distance[ray] || (t == distance[ray] && primitive_id[ray] < id)) return;
+        set(ray, t, id);
+    }
+    RAYPOOL_INLINE void set(std::uint32_t ray, Scalar t, std::int32_t id) const {
+        rows[ray].value[RayRow<Scalar>::kDistance] = distance[ray] = t;
+        primitive_id[ray] = id;
+    }
+};
+
+/// Three columns from `first` on.
+template <class Real>
+RAYPOOL_INLINE Vec3<Real> columns(const Real* row, int first) {
+    return vec3<Real>(row[first], row[first + 1], row[first + 2]);
+}
+
+}  // namespace raypool::wavefront
