@@ -1,6 +1,9 @@
 // The binary tree. Ranges of many boxes are split by all threads together; what is left then are subtrees, each built
 // by one thread. Where a range is cut depends on its boxes alone, by minima and counts that are the same in any order,
 // and boxes keep their order on either side: so the tree is the same, bit for bit, for any number of threads.
+//
+// Boxes are moved from one buffer to another and back, so that each range is read from first to last: 128 bytes a box
+// for the two, while the tree is built. Threads are as many as OpenMP gives who asks for none.
 
 #include <omp.h>
 

@@ -225,7 +225,7 @@ class Finder {
     [[nodiscard]] std::vector<std::uint8_t> touch_in_plane(const QuadIndex& quads) const {
         std::vector<std::uint8_t> is_joined(scene_.quads.size());
 #pragma omp parallel for schedule(dynamic, 1024) if (is_joined.size() > kFewest)
-        for (std::uint32_t i = 0; i < is_joined.size(); ++i) {
+        for (const std::uint32_t i : quads.by_place()) {
             if (quads.is_taken(i)) continue;
             const Coincidence::Flat& plane = out_.flats[i];
             is_joined[i] = quads.has_near(quads.box(i), plane.point, plane.normal, [&](std::uint32_t other) {
@@ -257,9 +257,7 @@ class Finder {
         for (const std::uint32_t member : members) share(member, nearest, plane.normal, plane.group);
     }
 
-    [[nodiscard]] std::size_t id(std::size_t flat) const {
-        return scene_.spheres.size() + flat;
-    }
+    [[nodiscard]] std::size_t id(std::size_t flat) const { return scene_.spheres.size() + flat; }
 
     const Scene& scene_;
     Coincidence out_;

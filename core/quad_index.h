@@ -30,6 +30,8 @@ class QuadIndex {
 
     [[nodiscard]] bool is_taken(std::uint32_t quad) const { return is_taken_[quad]; }
     [[nodiscard]] const Box& box(std::uint32_t quad) const { return boxes_[quad]; }
+    /// All quads, those that are near each other side by side.
+    [[nodiscard]] const std::vector<std::uint32_t>& by_place() const { return tree_.order; }
 
     void take(std::uint32_t quad) {
         is_taken_[quad] = true;
