@@ -177,6 +177,7 @@ int compare(const CompareOptions& options) {
     if (!options.json.empty()) check_writable(options.json);
     Scene scene = load_scene(options.scene);
     if (options.width != 0) set_width(scene, options.width);
+    const int threads = thread_count(options.threads);  // before anything runs in parallel
     const CompiledScene<float> compiled = compile<float>(scene);
 
     RenderSettings settings;
@@ -186,7 +187,7 @@ int compare(const CompareOptions& options) {
     settings.seed = parse_seed(options.seed);
     settings.sampler = parse_sampler(options.sampler);
     settings.roulette = options.roulette;
-    settings.threads = thread_count(options.threads);
+    settings.threads = threads;
     settings.schedule = options.schedule ? parse_schedule(*options.schedule) : default_schedule();
     settings.grain = parse_grain(options.grain);
 

@@ -11,7 +11,9 @@
 #include "core/compiled_scene.h"
 #include "core/environment.h"
 #include "core/light_range.h"
+#include "core/memory.h"
 #include "core/scene_reader.h"
+#include "wavefront/capacity.h"
 
 namespace raypool::cli {
 
@@ -79,6 +81,9 @@ void info(const std::string& name) {
           filled_lanes(compiled.planes));
     print_tree("sphere", compiled.sphere_tree);
     print_tree("quad", compiled.quad_tree);
+    print("pool of a thread: {} records, for trees of {} and a second-level cache of {}\n",
+          wavefront::pool_capacity(wavefront::PoolSettings{}, compiled), bytes_text(wavefront::tree_bytes(compiled)),
+          bytes_text(second_level_cache()));
     const FixedPoint fixed = FixedPoint::make(1, compiled.max_radiance);
     print("light: radiance {:.3g} to {:.3g}; sums of up to {} samples go by steps of {:.2g}{}\n", dimmest_light(scene),
           compiled.max_radiance, FixedPoint::kExtensibleSamples, 1 / fixed.scale(),

@@ -63,6 +63,7 @@ constexpr OptionRule kRules[] = {
     {"study", "--seed", Rule::Needs, "name", "", kListsOnly},
     {"study", "--quiet", Rule::Needs, "name", "", kListsOnly},
     {"study", "--scene", Rule::Excludes, "name", "stability", "its cases are scenes of their own"},
+    {"study", "--scene", Rule::Excludes, "name", "scene-size", "its scenes are generated"},
     {"study", "--depth", Rule::Excludes, "name", "adaptive", "it renders at depth 50"},
     {"study", "--threads", Rule::Excludes, "name", "ranks", "its ranks have one thread each"},
 };

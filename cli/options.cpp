@@ -38,6 +38,7 @@ std::uint64_t parse_seed(std::string_view text) {
 int thread_count(int asked) {
     const int count = asked == 0 ? omp_get_max_threads() : asked;
     check_thread_count(count, asked == 0 ? "OMP_NUM_THREADS" : "--threads");
+    omp_set_num_threads(count);
     return count;
 }
 

@@ -27,7 +27,7 @@ SampleRange parse_samples(std::string_view text, std::int64_t spp);
 std::uint64_t parse_seed(std::string_view text);
 
 /// Threads as asked for with --threads, or OMP_NUM_THREADS where `asked` is 0. Refuses more than OpenMP and the system
-/// would give (core/thread_limit.h).
+/// would give (core/thread_limit.h). What follows in this thread, such as building trees, uses as many.
 int thread_count(int asked);
 
 using NamedFiles = std::vector<std::pair<std::string, std::string>>;

@@ -46,7 +46,9 @@ void add_pool_options(CLI::App& command, PoolOptions& options) {
         "How radiance reaches the framebuffer (default: owned, of a shared pool atomic)");
     const auto count = CLI::Range(std::int64_t{1}, std::int64_t{std::numeric_limits<std::int32_t>::max()});
     command
-        .add_option("--pool-rays", options.rays, "Most records in a pool, or the bytes that they may take: 512KB, 2MB")
+        .add_option(
+            "--pool-rays", options.rays,
+            "Most records in a pool, or the bytes that they may take: 512KB, 2MB (default: by the bytes of the trees)")
         ->check([](const std::string& text) {
             parse_pool_rays(text, 1);
             return std::string();
@@ -92,7 +94,7 @@ PoolSettings pool_settings(const PoolOptions& options, std::size_t record_bytes)
     set(settings.accumulator, options.accumulator);
     if (!options.rays.empty()) settings.capacity = parse_pool_rays(options.rays, record_bytes);
     if (options.batch != 0) settings.batch = options.batch;
-    settings.batch = std::min(settings.batch, settings.capacity);
+    if (settings.capacity != PoolSettings::kAutomatic) settings.batch = std::min(settings.batch, settings.capacity);
     if (settings.width == StageWidth::Scalar) {  // streams and beams are made of registers
         settings.intersection = Intersection::Single;
         if (settings.camera == CameraStage::Beam) settings.camera = CameraStage::Fused;
@@ -108,7 +110,8 @@ nlohmann::json to_json(const PoolSettings& settings) {
                           {"camera", to_string(settings.camera)},
                           {"sort", to_string(settings.sort)},
                           {"accumulator", to_string(settings.accumulator)},
-                          {"rays", settings.capacity}};
+                          {"rays", settings.capacity == PoolSettings::kAutomatic ? nlohmann::json("automatic")
+                                                                                 : nlohmann::json(settings.capacity)}};
     if (settings.scope == PoolScope::Shared) {
         result["append"] = to_string(settings.append);
         result["batch"] = settings.batch;

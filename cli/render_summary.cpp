@@ -71,7 +71,7 @@ void print_summary(const RenderRecord& record) {
     print_work(settings, report);
     if (record.target_error > 0) print_error(record);
     if (report.pool_bytes > 0)
-        print("ray record of {} bytes; pools at most {:.2f} MB\n", report.record_bytes,
+        print("ray record of {} bytes; pools of {} records, at most {:.2f} MB\n", report.record_bytes, report.pool_rays,
               static_cast<double>(report.pool_bytes) / (1024 * 1024));
     if (record.truncation_bound > 0)
         print("depth {} cuts off a radiance of at most {:.3g} a pixel\n", settings.depth, record.truncation_bound);

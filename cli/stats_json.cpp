@@ -119,6 +119,7 @@ json stats_json(const RenderRecord& record) {
     }
     if (record.engine == "wavefront") {
         stats["record_bytes"] = report.record_bytes;
+        stats["pool_rays"] = report.pool_rays;
         stats["pool_bytes"] = report.pool_bytes;
         stats["rounds"] = rounds;
     }

@@ -15,7 +15,6 @@
 #include "cli/progress_bar.h"
 #include "cli/stop_signals.h"
 #include "core/error.h"
-#include "core/thread_limit.h"
 
 namespace raypool::cli {
 
@@ -71,7 +70,7 @@ int study(StudyCommand& command) {
     }
     command.options.seed = parse_seed(command.seed);
     const StopSignals signals;  // end a study after the case under way; a second one at once
-    if (command.options.threads > 0) check_thread_count(static_cast<int>(command.options.threads), "--threads");
+    if (command.options.threads > 0) thread_count(command.options.threads);
     const fs::path folder = command.output.empty() ? fs::path("out") / command.name : fs::path(command.output);
     if (command.name != kReproduce) return run(*studies::make_study(command.name), folder, command);
     for (const std::string& name : studies::paper_studies()) {

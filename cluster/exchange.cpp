@@ -22,6 +22,7 @@ struct ReportHead {
     double setup_s;
     SampleAudit audit;
     std::size_t record_bytes;
+    std::size_t pool_rays;
     std::size_t pool_bytes;
 };
 static_assert(std::is_trivially_copyable_v<ReportHead> && std::is_trivially_copyable_v<ThreadWork>);
@@ -72,7 +73,7 @@ void broadcast(Ranks& ranks, RenderSums& sums) {
 }
 
 std::vector<RenderReport> gather(Ranks& ranks, const RenderReport& own) {
-    const ReportHead head{own.seconds, own.setup_s, own.audit, own.record_bytes, own.pool_bytes};
+    const ReportHead head{own.seconds, own.setup_s, own.audit, own.record_bytes, own.pool_rays, own.pool_bytes};
     std::vector<std::byte> bytes(sizeof(head) + own.threads.size() * sizeof(ThreadWork));
     std::memcpy(bytes.data(), &head, sizeof(head));
     std::memcpy(bytes.data() + sizeof(head), own.threads.data(), bytes.size() - sizeof(head));
@@ -85,6 +86,7 @@ std::vector<RenderReport> gather(Ranks& ranks, const RenderReport& own) {
         report.setup_s = other.setup_s;
         report.audit = other.audit;
         report.record_bytes = other.record_bytes;
+        report.pool_rays = other.pool_rays;
         report.pool_bytes = other.pool_bytes;
         report.threads.resize((told.size() - sizeof(other)) / sizeof(ThreadWork));
         std::memcpy(report.threads.data(), told.data() + sizeof(other), told.size() - sizeof(other));
@@ -99,6 +101,7 @@ RenderReport joined(const std::vector<RenderReport>& ranks) {
         all.setup_s = std::max(all.setup_s, rank.setup_s);
         all.audit.add(rank.audit);
         all.record_bytes = std::max(all.record_bytes, rank.record_bytes);
+        all.pool_rays = std::max(all.pool_rays, rank.pool_rays);
         all.pool_bytes += rank.pool_bytes;
         all.threads.insert(all.threads.end(), rank.threads.begin(), rank.threads.end());
     }

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
-#include <optional>
 
+#include "core/nearby_keys.h"
 #include "core/quad_index.h"
 #include "core/shape_bounds.h"
 #include "core/shapes.h"
@@ -72,23 +71,7 @@ double sphere_bound(const Sphere& a, const Sphere& b) {
     return kRoundoff<Scalar> * (2 * (reach(a) + reach(b)) + std::max(reach(a), reach(b)) + 21 * radius);
 }
 
-/// Finds things that are nearly equal by a key of theirs: a sum of their numbers with coefficients that no scene has.
-class NearbyKeys {
-  public:
-    /// The first listed of those added whose key is within `window` and that `is_equal`.
-    template <class IsEqual>
-    [[nodiscard]] std::optional<std::uint32_t> find(double key, double window, IsEqual is_equal) const {
-        std::optional<std::uint32_t> first;
-        const auto end = by_key_.upper_bound(key + window);
-        for (auto at = by_key_.lower_bound(key - window); at != end; ++at)
-            if ((!first || at->second < *first) && is_equal(at->second)) first = at->second;
-        return first;
-    }
-    void add(double key, std::uint32_t index) { by_key_.emplace(key, index); }
-
-  private:
-    std::multimap<double, std::uint32_t> by_key_;
-};
+constexpr std::size_t kFewest = 16384;  ///< shapes that are worth more than one thread
 
 /// Directions within the unit cube, at odds with axes and lattices.
 const Vector3d kKeyA(0.8414709848, 0.4546487134, 0.9893582466);
@@ -123,18 +106,25 @@ class Finder {
             return (center(a, open) - center(b, open)).norm() <= bound &&
                    (center(a, close) - center(b, close)).norm() <= bound;
         };
-        NearbyKeys kept;
-        for (std::uint32_t i = 0; i < scene_.spheres.size(); ++i) {
+        // A difference of the bound in all numbers is one of less than 3 in the key, and the bounds of spheres that
+        // coincide are nearly equal.
+        std::vector<KeyWindow> keys(scene_.spheres.size());
+#pragma omp parallel for schedule(static) if (keys.size() > kFewest)
+        for (std::uint32_t i = 0; i < keys.size(); ++i) {
             const Sphere& sphere = scene_.spheres[i];
-            const double key =
-                kKeyA.dot(center(sphere, open)) + kKeyB.dot(center(sphere, close)) + 0.5436 * sphere.radius;
-            // A difference of the bound in all numbers is one of less than 3 in the key, and the bounds of spheres that
-            // coincide are nearly equal.
-            const double window = 4 * sphere_bound<Scalar>(sphere, sphere);
-            if (kept.find(key, window, [&](std::uint32_t k) { return coincide(scene_.spheres[k], sphere); })) {
+            keys[i] = {kKeyA.dot(center(sphere, open)) + kKeyB.dot(center(sphere, close)) + 0.5436 * sphere.radius,
+                       4 * sphere_bound<Scalar>(sphere, sphere), i};
+        }
+        const std::vector<std::uint8_t> is_doubted = have_equal(
+            keys, [&](std::uint32_t a, std::uint32_t b) { return coincide(scene_.spheres[a], scene_.spheres[b]); });
+        NearbyKeys kept;
+        for (std::uint32_t i = 0; i < keys.size(); ++i) {
+            if (is_doubted[i] == 0) continue;
+            if (kept.find(keys[i].key, keys[i].window,
+                          [&](std::uint32_t k) { return coincide(scene_.spheres[k], scene_.spheres[i]); })) {
                 out_.is_hidden[i] = true;
             } else {
-                kept.add(key, i);
+                kept.add(keys[i].key, i);
             }
         }
     }
@@ -195,9 +185,9 @@ class Finder {
     /// Quads join a plane that they lie in or else, the largest first, the largest quad that they touch and whose plane
     /// they lie in, directly or over others that do: the larger shape has the more exact normal.
     void group_quads() {
-        std::vector<Box> boxes;
-        boxes.reserve(scene_.quads.size());
-        for (const Quad& quad : scene_.quads) boxes.push_back(quad_box<Scalar>(quad));
+        std::vector<Box> boxes(scene_.quads.size());
+#pragma omp parallel for schedule(static) if (boxes.size() > kFewest)
+        for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = quad_box<Scalar>(scene_.quads[i]);
         QuadIndex quads(std::move(boxes));
 
         constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -221,8 +211,29 @@ class Finder {
         std::iota(by_area.begin(), by_area.end(), 0U);
         std::stable_sort(by_area.begin(), by_area.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return area[a] > area[b]; });
-        for (const std::uint32_t first : by_area)
-            if (!quads.is_taken(first)) group_from(first, quads);
+        const std::vector<std::uint8_t> is_joined = touch_in_plane(quads);
+        for (const std::uint32_t first : by_area) {
+            if (quads.is_taken(first)) continue;
+            if (is_joined[first] != 0) {
+                group_from(first, quads);
+            } else {
+                quads.take(first);
+            }
+        }
+    }
+
+    /// By quad not taken, 1 where another one that it touches lies in its plane: no other quad begins a group.
+    [[nodiscard]] std::vector<std::uint8_t> touch_in_plane(const QuadIndex& quads) const {
+        std::vector<std::uint8_t> is_joined(scene_.quads.size());
+#pragma omp parallel for schedule(dynamic, 1024) if (is_joined.size() > kFewest)
+        for (const std::uint32_t i : quads.by_place()) {
+            if (quads.is_taken(i)) continue;
+            const Coincidence::Flat& plane = out_.flats[i];
+            is_joined[i] = quads.has_near(quads.box(i), plane.point, plane.normal, [&](std::uint32_t other) {
+                return other != i && lies_in(plane.normal, plane.point, described_[i], other);
+            });
+        }
+        return is_joined;
     }
 
     void group_from(std::uint32_t first, QuadIndex& quads) {

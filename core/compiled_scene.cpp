@@ -1,20 +1,22 @@
 #include "core/compiled_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
+#include <span>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/large_boxes.h"
 #include "core/shape_bounds.h"
 
 namespace raypool {
 
 namespace {
 
-/// A sphere is tested up front when its box is more than this part of the box of all smaller ones.
-constexpr double kLargeArea = 0.01;
+/// Shapes that are worth more than one thread.
+constexpr std::size_t kFewestShapes = 16384;
 
 enum class Shape : std::uint8_t { Sphere, Quad, Plane };
 
@@ -157,34 +159,22 @@ class Compiler {
         out_.flats.push_back(flat);
     }
 
-    /// Sets aside the spheres that span the scene, largest first, as long as each dwarfs all that are smaller.
     void add_spheres() {
-        std::vector<Box> box(scene_.spheres.size());
-        Ids by_area = shown_ids(0, scene_.spheres.size());
-        const std::size_t count = by_area.size();
-        for (const std::uint32_t id : by_area) box[id] = sphere_box<Scalar>(scene_.spheres[id]);
-        std::stable_sort(by_area.begin(), by_area.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return box[a].area() > box[b].area(); });
-        std::vector<double> area_after(count + 1, 0);
-        Box after;
-        for (std::size_t i = count; i-- > 0;) {
-            area_after[i] = after.area();
-            after.extend(box[by_area[i]]);
+        Ids ids = shown_ids(0, scene_.spheres.size());
+        const auto boxes_of = [&](const Ids& of) {
+            return boxes_by_id(of, [&](std::uint32_t id) { return sphere_box<Scalar>(scene_.spheres[id]); });
+        };
+        std::vector<Box> boxes = boxes_of(ids);
+        Ids large = large_boxes(boxes, kWidth);
+        if (!large.empty()) {
+            for (std::uint32_t& place : large) place = ids[place];
+            out_.large_spheres.push_back(sphere_block(large));
+            std::erase_if(ids,
+                          [&](std::uint32_t id) { return std::find(large.begin(), large.end(), id) != large.end(); });
+            boxes = boxes_of(ids);
         }
-        std::size_t large = 0;
-        while (large < std::min<std::size_t>(count, kWidth) &&
-               box[by_area[large]].area() > kLargeArea * area_after[large])
-            ++large;
-
-        const Ids large_ids(by_area.begin(), by_area.begin() + static_cast<std::ptrdiff_t>(large));
-        if (large > 0) out_.large_spheres.push_back(sphere_block(large_ids));
-
-        Ids ids(by_area.begin() + static_cast<std::ptrdiff_t>(large), by_area.end());
-        std::sort(ids.begin(), ids.end());
-        std::vector<Box> boxes;
-        for (const std::uint32_t id : ids) boxes.push_back(box[id]);
-        out_.sphere_tree =
-            block_tree<SphereBlock<Scalar, kWidth>>(boxes, ids, [&](const Ids& in_leaf) { return sphere_block(in_leaf); });
+        out_.sphere_tree = block_tree<SphereBlock<Scalar, kWidth>>(
+            boxes, ids, [&](std::span<const std::uint32_t> in_leaf) { return sphere_block(in_leaf); });
     }
 
     void add_flats() {
@@ -193,18 +183,16 @@ class Compiler {
         const auto box_of = [&](std::uint32_t id) {
             return quad_box<Scalar>(scene_.quads[id - scene_.spheres.size()]);
         };
-        std::vector<Box> boxes;
-        for (const std::uint32_t id : ids) boxes.push_back(box_of(id));
-        out_.quad_tree = block_tree<FlatBlock<Scalar, kWidth>>(boxes, ids, [&](const Ids& in_leaf) {
-            std::vector<Box> leaf_boxes;
-            for (const std::uint32_t id : in_leaf) leaf_boxes.push_back(box_of(id));
-            return flat_block(in_leaf, leaf_boxes);
-        });
+        out_.quad_tree = block_tree<FlatBlock<Scalar, kWidth>>(
+            boxes_by_id(ids, box_of), ids, [&](std::span<const std::uint32_t> in_leaf) {
+                std::array<Box, kWidth> leaf_boxes;
+                std::transform(in_leaf.begin(), in_leaf.end(), leaf_boxes.begin(), box_of);
+                return flat_block(in_leaf, leaf_boxes);
+            });
         const Ids planes = shown_ids(first_plane, first_plane + scene_.planes.size());
         for (std::size_t i = 0; i < planes.size(); i += kWidth) {
-            const Ids block(planes.begin() + static_cast<std::ptrdiff_t>(i),
-                            planes.begin() + static_cast<std::ptrdiff_t>(std::min(i + kWidth, planes.size())));
-            out_.planes.push_back(flat_block(block, std::vector<Box>(block.size())));
+            const std::span block = std::span(planes).subspan(i, std::min<std::size_t>(kWidth, planes.size() - i));
+            out_.planes.push_back(flat_block(block, std::array<Box, kWidth>{}));
         }
     }
 
@@ -216,7 +204,7 @@ class Compiler {
         return ids;
     }
 
-    SphereBlock<Scalar, kWidth> sphere_block(const Ids& ids) const {
+    SphereBlock<Scalar, kWidth> sphere_block(std::span<const std::uint32_t> ids) const {
         SphereBlock<Scalar, kWidth> block{};
         std::fill_n(block.radius, kWidth, std::numeric_limits<Scalar>::quiet_NaN());
         std::fill_n(block.id, kWidth, kNoPrimitive);
@@ -234,7 +222,8 @@ class Compiler {
         return block;
     }
 
-    FlatBlock<Scalar, kWidth> flat_block(const Ids& ids, const std::vector<Box>& boxes) const {
+    FlatBlock<Scalar, kWidth> flat_block(std::span<const std::uint32_t> ids,
+                                         const std::array<Box, kWidth>& boxes) const {
         FlatBlock<Scalar, kWidth> block{};
         for (auto& component : block.normal) std::fill_n(component, kWidth, std::numeric_limits<Scalar>::quiet_NaN());
         std::fill_n(block.id, kWidth, kNoPrimitive);
@@ -256,15 +245,27 @@ class Compiler {
         return block;
     }
 
+    template <class BoxOf>
+    static std::vector<Box> boxes_by_id(const Ids& ids, BoxOf box_of) {
+        std::vector<Box> boxes(ids.size());
+#pragma omp parallel for schedule(static) if (ids.size() > kFewestShapes)
+        for (std::size_t i = 0; i < ids.size(); ++i) boxes[i] = box_of(ids[i]);
+        return boxes;
+    }
+
+    /// make_block(ids of a leaf) throws nothing.
     template <class Block, class MakeBlock>
     BlockTree<Block, Scalar, kWidth> block_tree(const std::vector<Box>& boxes, const Ids& ids,
                                                 MakeBlock make_block) const {
         WideBvh<Scalar, kWidth> bvh = collapse<Scalar, kWidth>(build_binary_bvh(boxes, kWidth));
         BlockTree<Block, Scalar, kWidth> tree;
-        for (const auto& leaf : bvh.leaves) {
-            Ids in_leaf;
-            for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) in_leaf.push_back(ids[bvh.order[i]]);
-            tree.blocks.push_back(make_block(in_leaf));
+        tree.blocks.resize(bvh.leaves.size());
+#pragma omp parallel for schedule(static) if (ids.size() > kFewestShapes)
+        for (std::size_t i = 0; i < bvh.leaves.size(); ++i) {
+            const auto& leaf = bvh.leaves[i];
+            std::array<std::uint32_t, kWidth> in_leaf;
+            for (std::uint32_t k = 0; k < leaf.count; ++k) in_leaf[k] = ids[bvh.order[leaf.first + k]];
+            tree.blocks[i] = make_block(std::span(in_leaf).first(leaf.count));
         }
         tree.nodes = std::move(bvh.nodes);
         tree.depth = bvh.depth;

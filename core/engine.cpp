@@ -14,6 +14,7 @@ void RenderReport::add(const RenderReport& later) {
     audit.add(later.audit);
     rounds.insert(rounds.end(), later.rounds.begin(), later.rounds.end());
     record_bytes = std::max(record_bytes, later.record_bytes);
+    pool_rays = std::max(pool_rays, later.pool_rays);
     pool_bytes = std::max(pool_bytes, later.pool_bytes);
 }
 

@@ -116,6 +116,7 @@ struct RenderReport {
     SampleAudit audit;
     std::vector<RoundWork> rounds;  ///< of a wavefront engine, with log_rounds or a trace
     std::size_t record_bytes = 0;   ///< of a wavefront engine: moved in and out of the pool by a record
+    std::size_t pool_rays = 0;      ///< of a wavefront engine: records that each pool has room for
     std::size_t pool_bytes = 0;     ///< of a wavefront engine: all pools, streams and accumulators at their largest
 
     /// Takes in a later render into the same framebuffer.

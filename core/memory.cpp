@@ -103,6 +103,11 @@ std::size_t available_memory() {
     return std::min({machine_memory(), address_space(), control_groups()});
 }
 
+std::size_t second_level_cache() {
+    const long bytes = sysconf(_SC_LEVEL2_CACHE_SIZE);
+    return bytes > 0 ? static_cast<std::size_t>(bytes) : std::size_t{1} << 20U;
+}
+
 std::string bytes_text(std::size_t bytes) {
     const auto value = static_cast<double>(bytes);
     return bytes < 1'000'000'000 ? fmt::format("{:.1f} MB", value * 1e-6) : fmt::format("{:.1f} GB", value * 1e-9);

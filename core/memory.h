@@ -16,6 +16,9 @@ std::size_t available_memory();
 /// Throws InputError unless `bytes` are available: "WHAT take 107.4 GB, of 20.1 GB of memory that are available".
 void check_available(std::size_t bytes, std::string_view what);
 
+/// Bytes of the second-level cache of a core; 1 MiB where the system does not say.
+std::size_t second_level_cache();
+
 /// "107.4 GB", "20.1 MB": powers of ten.
 std::string bytes_text(std::size_t bytes);
 

@@ -1,6 +1,7 @@
 /// Quads by place, for whoever takes them one after the other: which of those left are near a box and a plane.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -29,6 +30,8 @@ class QuadIndex {
 
     [[nodiscard]] bool is_taken(std::uint32_t quad) const { return is_taken_[quad]; }
     [[nodiscard]] const Box& box(std::uint32_t quad) const { return boxes_[quad]; }
+    /// All quads, those that are near each other side by side.
+    [[nodiscard]] const std::vector<std::uint32_t>& by_place() const { return tree_.order; }
 
     void take(std::uint32_t quad) {
         is_taken_[quad] = true;
@@ -41,29 +44,40 @@ class QuadIndex {
     /// Calls visit(quad) for the quads not taken whose boxes meet `box` and the plane. Visit may take that quad.
     template <class Visit>
     void for_each_near(const Box& box, const Vector3d& point, const Vector3d& normal, Visit visit) {
+        has_near(box, point, normal, [&](std::uint32_t quad) {
+            visit(quad);
+            return false;
+        });
+    }
+
+    /// Whether is_wanted(quad) for one of these quads. Allocates nothing.
+    template <class IsWanted>
+    bool has_near(const Box& box, const Vector3d& point, const Vector3d& normal, IsWanted is_wanted) const {
         const auto is_near = [&](const Box& other) {
             if ((other.low.array() > box.high.array()).any() || (other.high.array() < box.low.array()).any())
                 return false;
             const double height = normal.dot(0.5 * (other.low + other.high) - point);
             return std::abs(height) <= normal.cwiseAbs().dot(0.5 * (other.high - other.low));
         };
-        if (tree_.nodes.empty()) return;
-        std::vector<std::uint32_t> stack{0};
-        while (!stack.empty()) {
-            const std::uint32_t i = stack.back();
-            stack.pop_back();
+        if (tree_.nodes.empty()) return false;
+        std::array<std::uint32_t, kMostTreeLevels + 1> open;  // a node of each level, and one more
+        std::size_t open_count = 0;
+        open[open_count++] = 0;
+        while (open_count > 0) {
+            const std::uint32_t i = open[--open_count];
             const BinaryBvh::Node& node = tree_.nodes[i];
             if (free_count_[i] == 0 || !is_near(node.box)) continue;
             if (node.count == 0) {
-                stack.push_back(node.left + 1);
-                stack.push_back(node.left);
+                open[open_count++] = node.left + 1;
+                open[open_count++] = node.left;
                 continue;
             }
             for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
                 const std::uint32_t quad = tree_.order[k];
-                if (!is_taken_[quad] && is_near(boxes_[quad])) visit(quad);
+                if (!is_taken_[quad] && is_near(boxes_[quad]) && is_wanted(quad)) return true;
             }
         }
+        return false;
     }
 
   private:

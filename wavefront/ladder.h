@@ -38,7 +38,7 @@ inline std::vector<Rung> ladder(int threads) {
     pool.accumulator = Accumulator::OwnedInt64;
     pool.capacity = PoolSettings::kSharedCapacity / threads;
     add("thread", "a pool for each thread, which then owns its pixels");
-    pool.capacity = PoolSettings{}.capacity;
+    pool.capacity = PoolSettings::kThreadCapacity;
     add("thread-small", "a pool that fits into the cache");
     pool.refill = Refill::Regenerate;
     add("regenerate", "camera rays enter as soon as there is room");

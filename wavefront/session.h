@@ -17,6 +17,7 @@
 #include "core/loop.h"
 #include "core/memory.h"
 #include "wavefront/accumulator.h"
+#include "wavefront/capacity.h"
 #include "wavefront/stages.h"
 
 namespace raypool::wavefront {
@@ -28,7 +29,7 @@ class PoolSession : public RenderSession {
                 Framebuffer& framebuffer, std::size_t record_bytes)
         : begin_s_(omp_get_wtime()),
           settings_(settings),
-          pool_(pool),
+          pool_(with_capacity(pool, scene)),
           framebuffer_(framebuffer),
           context_{scene,
                    settings_,
@@ -37,6 +38,7 @@ class PoolSession : public RenderSession {
                    framebuffer.fixed_point(),
                    nullptr} {
         report_.record_bytes = record_bytes;
+        report_.pool_rays = capacity();
     }
 
   protected:
@@ -73,6 +75,11 @@ class PoolSession : public RenderSession {
     }
 
   private:
+    static PoolSettings with_capacity(PoolSettings pool, const CompiledScene<Scalar>& scene) {
+        pool.capacity = pool_capacity(pool, scene);
+        return pool;
+    }
+
     RenderReport render(const RenderUnit& unit) final {
         if (path_count(context_.scene, unit) == 0) return {};
         RenderReport report = run(unit);

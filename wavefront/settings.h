@@ -62,11 +62,13 @@ struct PoolSettings {
     Sort sort = Sort::None;
     Append append = Append::InPlace;
     Accumulator accumulator = Accumulator::OwnedInt64;
-    std::int64_t capacity = 8192;  ///< records, of each pool; >= 1
+    std::int64_t capacity = kAutomatic;  ///< records, of each pool; >= 1, or as capacity.h has it
     std::int64_t batch = 4096;     ///< records that a thread takes at a time from a shared pool
     /// How the batches of a shared pool are handed out. They are few, so that a schedule meant for lines would fit ill.
     LoopSchedule batch_schedule{LoopSchedule::Kind::Dynamic, 0};
 
+    static constexpr std::int64_t kAutomatic = 0;
+    static constexpr std::int64_t kThreadCapacity = 8192;   ///< fits into the second-level cache, with the stages' memory
     static constexpr std::int64_t kSharedCapacity = 65536;  ///< better for a shared pool, whose rounds end in barriers
 };
 

@@ -16,6 +16,7 @@ std::vector<std::unique_ptr<Study>> all_studies() {
     studies.push_back(scaling_study());
     studies.push_back(ranks_study());
     studies.push_back(pool_study());
+    studies.push_back(scene_size_study());
     studies.push_back(framebuffer_study());
     studies.push_back(ladder_study());
     studies.push_back(needs_study());

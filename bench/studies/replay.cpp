@@ -48,7 +48,7 @@ std::vector<GroupedWay> all_ways() {
     constexpr ReplaySchedule kStatic{Kind::Static, 0};
     constexpr ReplaySchedule kDynamic{Kind::Dynamic, 1};
     const auto shared = static_cast<std::size_t>(wavefront::PoolSettings::kSharedCapacity);
-    const std::int64_t own = wavefront::PoolSettings{}.capacity;
+    const std::int64_t own = wavefront::PoolSettings::kThreadCapacity;
 
     std::vector<GroupedWay> ways;
     for (const RealWay& way : kRealWays)

@@ -44,7 +44,7 @@ NamedEngine engine_of(const Way& way) {
 ReplayWay replay_of(const Way& way) {
     if (way.engine == Way::Engine::Recursive) return loop_way(way.name, way.grain, way.schedule);
     const wavefront::PoolSettings pool;
-    if (way.engine == Way::Engine::FusedPool) return thread_pool_way(way.name, way.grain, way.schedule, pool.capacity);
+    if (way.engine == Way::Engine::FusedPool) return thread_pool_way(way.name, way.grain, way.schedule, pool.kThreadCapacity);
     return {way.name,
             ReplayWay::Kind::Drained,
             {},

@@ -18,6 +18,7 @@ std::unique_ptr<Study> load_study();
 std::unique_ptr<Study> ranks_study();
 std::unique_ptr<Study> replay_study();
 std::unique_ptr<Study> scaling_study();
+std::unique_ptr<Study> scene_size_study();
 std::unique_ptr<Study> speed_accuracy_study();
 std::unique_ptr<Study> stability_study();
 

@@ -51,7 +51,8 @@ class OptionThatDoesNothing(CommandTest):
                               ("--width", 16), ("--spp", 1), ("--depth", 3), ("--threads", 1), ("--repeats", 1),
                               ("--seed", 1), ("--quiet", None)):
             self.assert_idle("study", option, *([] if value is None else [value]), named=[option, "name"])
-        for study, option, value in (("stability", "--scene", "cornell"), ("adaptive", "--depth", 3),
+        for study, option, value in (("stability", "--scene", "cornell"), ("scene-size", "--scene", "cornell"),
+                                     ("adaptive", "--depth", 3),
                                      ("ranks", "--threads", 2)):
             self.assert_idle("study", study, option, value, named=[option, study])
 

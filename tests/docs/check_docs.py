@@ -3,8 +3,8 @@
 
 Usage: check_docs.py REPOSITORY RAYPOOL
 
-`raypool` commands are run, in their order on the page, in a scratch folder that looks like the repository and whose
-files go away. Scripts of the repository are not run; they must exist and be executable. Presets must exist.
+`raypool` and `scenes/generate` are run, in their order on the page, in a scratch folder that looks like the repository and
+whose files go away. Other scripts of the repository are not run; they must exist and be executable. Presets must exist.
 """
 import json
 import os
@@ -16,6 +16,7 @@ import tempfile
 from pathlib import Path
 
 SECONDS_PER_COMMAND = 120
+RUN = ("raypool", "scenes/generate")
 NEVER_RUN = {"cmake", "ctest", "git", "cd", "clang-format"}
 
 
@@ -42,7 +43,7 @@ def problem_with(command, repository, scratch, raypool, presets):
     while "=" in words[0]:  # a variable for the command alone
         words.pop(0)
     program = words[0]
-    if program == "raypool":
+    if program in RUN:
         environment = dict(os.environ, PATH=f"{raypool.parent}{os.pathsep}{os.environ['PATH']}")
         result = subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=scratch, env=environment, text=True,
                                 stdin=subprocess.DEVNULL, capture_output=True, timeout=SECONDS_PER_COMMAND)
@@ -78,7 +79,7 @@ def main():
 
         for page in pages:
             for number, command in commands(page):
-                run_count += command.startswith("raypool")
+                run_count += command.startswith(RUN)
                 problem = problem_with(command, repository, scratch, raypool, presets)
                 if problem:
                     problems.append(f"{page.relative_to(repository)}:{number}: {command}\n    {problem}")

@@ -12,6 +12,7 @@ import json
 import pathlib
 import subprocess
 import sys
+import tempfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SCENES = SOURCE / "scenes"
@@ -62,6 +63,12 @@ def check_schema(jsonschema):
         for error in validator.iter_errors(scene):
             failures.append(f"{path.name}: {error.message[:200]}")
         check((path.parent / scene.get("$schema", "")).is_file(), f"{path.name}: $schema must lead to the schema")
+
+    with tempfile.TemporaryDirectory() as folder:
+        for kind in ("spheres", "quads", "cluster"):
+            made = pathlib.Path(folder) / "made.json"
+            subprocess.run([SCENES / "generate", "200", kind, "-o", made], check=True)
+            check(validator.is_valid(json.loads(made.read_text())), f"scenes/generate: {kind} do not fit the schema")
 
     document = (SOURCE / "docs/scene-format.md").read_text()
     example = json.loads(document.split("```json\n")[1].split("```")[0])

@@ -1,0 +1,64 @@
+"""Ratio to recursion, and time of a ray, by the number of shapes."""
+import statistics
+
+from common import COLOURS, distinct, line, plt, spread, where
+
+BLUE, ORANGE, GREEN, RED, SKY, PINK, BLACK, YELLOW = COLOURS
+
+
+def timed(rows):
+    return [row for row in rows if not str(row["way"]).startswith("cache misses")]
+
+
+def name_of(way):
+    return way if isinstance(way, str) else f"{way:.0f} records"
+
+
+def panels(rows):
+    """A panel for each kind, in a row for each depth; of the most threads."""
+    rows = where(timed(rows), threads=max(distinct(rows, "threads")))
+    kinds, depths = distinct(rows, "kind"), distinct(rows, "depth")
+    figure, axes = plt.subplots(len(depths), len(kinds), figsize=(4.2 * len(kinds) + 1.8, 3.9 * len(depths) + 0.8),
+                                sharex=True, sharey="row", squeeze=False)
+    for across, depth in zip(axes, depths):
+        for axis, kind in zip(across, kinds):
+            axis.set_xscale("log")
+            axis.set_title(f"{kind}, depth {depth:.0f}, {rows[0]['threads']:.0f} thread(s)")
+            yield figure, axis, where(rows, depth=depth, kind=kind)
+        across[-1].legend(loc="upper left", bbox_to_anchor=(1, 1))
+    for axis in axes[-1]:
+        axis.set_xlabel("shapes")
+
+
+def ratios(here, way, shapes):
+    base = [row["mpaths_per_s"] for row in where(here, way="recursion", shapes=shapes)]
+    values = [row["mpaths_per_s"] / other for row, other in zip(where(here, way=way, shapes=shapes), base)]
+    return statistics.median(values), min(values), max(values)
+
+
+def ratio(run, rows):
+    for figure, axis, here in panels(rows):
+        sizes = distinct(here, "shapes")
+        ways = [way for way in distinct(here, "way") if way not in ("recursion", "automatic")]
+        for index, way in enumerate(ways):
+            line(axis, sizes, [ratios(here, way, size) for size in sizes], index=index, label=name_of(way), linestyle="--")
+        line(axis, sizes, [ratios(here, "automatic", size) for size in sizes], color=BLACK, marker="*", label="automatic")
+        axis.axhline(1, color="black", linewidth=2, label="recursion")
+        axis.set_ylim(bottom=0)
+        axis.set_ylabel("times as fast as recursion")
+    return figure
+
+
+def time(run, rows):
+    for figure, axis, here in panels(rows):
+        sizes = distinct(here, "shapes")
+        for way, label, style in (("recursion", "recursion", {"color": RED, "marker": "s", "linestyle": "--"}),
+                                  ("automatic", "pool", {"color": BLUE, "marker": "o"})):
+            line(axis, sizes, [spread(where(here, way=way, shapes=size), "ns_per_segment") for size in sizes], label=label,
+                 **style)
+        axis.set_yscale("log")
+        axis.set_ylabel("nanoseconds of a thread for a ray")
+    return figure
+
+
+PICTURES = {"ratio": ratio, "time": time}

@@ -1,0 +1,43 @@
+/// How many records a pool has room for where the settings leave it open.
+///
+/// Where the trees fit into the second-level cache, a pool must fit in beside them. Where they do not, rays share the
+/// misses on nodes, and more rays share better: so the capacity grows with the trees (docs/pool.md has the figures).
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/compiled_scene.h"
+#include "core/memory.h"
+#include "wavefront/settings.h"
+
+namespace raypool::wavefront {
+
+/// Of nodes and leaves.
+template <class Scalar>
+std::size_t tree_bytes(const CompiledScene<Scalar>& scene) {
+    const auto bytes = [](const auto& tree) {
+        return tree.nodes.size() * sizeof(tree.nodes[0]) + tree.blocks.size() * sizeof(tree.blocks[0]);
+    };
+    return bytes(scene.sphere_tree) + bytes(scene.quad_tree);
+}
+
+/// Records of the pool of a thread: a power of two in [kThreadCapacity, 16 kThreadCapacity], for trees of so many bytes
+/// and a second-level cache of so many, > 0.
+constexpr std::int64_t thread_capacity(std::size_t tree_bytes, std::size_t cache_bytes) {
+    constexpr std::size_t kMostGrowth = 16;
+    const std::size_t growth = std::clamp<std::size_t>(tree_bytes / cache_bytes, 1, kMostGrowth);
+    return PoolSettings::kThreadCapacity * static_cast<std::int64_t>(std::bit_floor(growth));
+}
+
+/// Records of each pool in a render of the scene: what the settings say, or as many as suit the trees and this machine.
+template <class Scalar>
+std::int64_t pool_capacity(const PoolSettings& pool, const CompiledScene<Scalar>& scene) {
+    if (pool.capacity != PoolSettings::kAutomatic) return pool.capacity;
+    if (pool.scope == PoolScope::Shared) return PoolSettings::kSharedCapacity;
+    return thread_capacity(tree_bytes(scene), second_level_cache());
+}
+
+}  // namespace raypool::wavefront
