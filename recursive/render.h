@@ -9,9 +9,11 @@
 
 #include <fmt/format.h>
 
+#include "core/balanced_items.h"
 #include "core/engine.h"
 #include "core/error.h"
 #include "core/loop.h"
+#include "core/team_loop.h"
 #include "recursive/item_log.h"
 #include "recursive/tracer.h"
 
@@ -80,44 +82,69 @@ class Session : public RenderSession {
 
   private:
     RenderReport render(const RenderUnit& unit) override {
+        if (path_count(scene_, unit) == 0) return {};
         const double start = omp_get_wtime();
+        if (settings_.schedule.kind == LoopSchedule::Kind::Balanced) {
+            const BalancedItems items(scene_.width, scene_.height, unit, settings_.threads);
+            const auto run = [&]<Addition addition>() {
+                return loop_over<addition>(items.count(), omp_get_wtime() - start, [&](std::int64_t item, auto trace) {
+                    items.for_each_line(item, scene_.width, unit.pixels,
+                                        [&](const LinePixels& line, std::int64_t first, std::int64_t end) {
+                                            trace(line, unit.first_sample + first, unit.first_sample + end);
+                                        });
+                });
+            };
+            return items.splits_pixels() ? run.template operator()<Addition::Atomic>()
+                                         : run.template operator()<Addition::Plain>();
+        }
         const WorkItems items(scene_.width, scene_.height, settings_.grain, unit.pixels);
-        const double setup_s = omp_get_wtime() - start;
+        return loop_over<Addition::Plain>(items.count(), omp_get_wtime() - start, [&](std::int64_t item, auto trace) {
+            items.for_each_line(item, [&](const LinePixels& line) { trace(line, unit.first_sample, unit.end_sample); });
+        });
+    }
+
+    /// Calls visit(item, trace) in a thread for each of the items; visit calls trace(LinePixels, first sample, end
+    /// sample) for each line of its item. `setup_s` is what setting up the items took.
+    template <Addition addition, class Visit>
+    RenderReport loop_over(std::int64_t item_count, double setup_s, Visit visit) {
+        TeamLoop loop(settings_);
         RenderReport report = run_threads(settings_, [&](ThreadWork& work, SampleAudit& audit) {
             Tracer<needs, Scalar, Work, splitting, rules> tracer(scene_, settings_, framebuffer_.fixed_point());
             ProgressBatch progress(settings_.progress);
             ItemLog log(settings_, omp_get_thread_num());
             PixelCost cost(settings_.cost_image);
             const bool has_squares = framebuffer_.has_squares();
-            const std::int64_t samples = unit.end_sample - unit.first_sample;
 
-#pragma omp for schedule(runtime) nowait
-            for (std::int64_t item = 0; item < items.count(); ++item) {
-                const PixelRange range = items.range(item);
-                log.start(range);
-                items.for_each_line(item, [&](const LinePixels& line) {
-                    const std::int64_t y = line[0] / scene_.width;
-                    for (std::int64_t i = 0; i < line.count; ++i) {
-                        const std::int64_t pixel = line[i];
-                        const std::int64_t x = pixel - y * scene_.width;
-                        FixedRgb sum{};
-                        FixedSquare square;
-                        cost.start(tracer);
-                        for (std::int64_t s = unit.first_sample; s < unit.end_sample; ++s) {
-                            const FixedRgb& sample = tracer.template sample<form>(x, y, s);
-                            for (int k = 0; k < 3; ++k) sum[k] += sample[k];
-                            if (has_squares) square.add(tracer.square(sample));
-                        }
-                        cost.stop(tracer, pixel);
-                        framebuffer_.add(pixel, sum);
-                        if (has_squares) framebuffer_.add_square(pixel, square);
-                        work.paths += samples;
-                        progress.add(samples);
+            const auto trace_line = [&](const LinePixels& line, std::int64_t first_sample, std::int64_t end_sample) {
+                const std::int64_t y = line[0] / scene_.width;
+                for (std::int64_t i = 0; i < line.count; ++i) {
+                    const std::int64_t pixel = line[i];
+                    const std::int64_t x = pixel - y * scene_.width;
+                    FixedRgb sum{};
+                    FixedSquare square;
+                    cost.start(tracer);
+                    for (std::int64_t s = first_sample; s < end_sample; ++s) {
+                        const FixedRgb& sample = tracer.template sample<form>(x, y, s);
+                        for (int k = 0; k < 3; ++k) sum[k] += sample[k];
+                        if (has_squares) square.add(tracer.square(sample));
                     }
+                    cost.stop<addition>(tracer, pixel);
+                    framebuffer_.template add<addition>(pixel, sum);
+                    if (has_squares) framebuffer_.template add_square<addition>(pixel, square);
+                    work.paths += end_sample - first_sample;
+                    progress.add(end_sample - first_sample);
+                }
+            };
+            work.wait_s = loop.run(item_count, [&](std::int64_t item) {
+                bool is_started = false;
+                visit(item, [&](const LinePixels& line, std::int64_t first_sample, std::int64_t end_sample) {
+                    if (!is_started) log.start(line[0] % scene_.width, line[0] / scene_.width);
+                    is_started = true;
+                    trace_line(line, first_sample, end_sample);
                     log.add(line.count);
                 });
                 log.stop();
-            }
+            });
             work.segments = tracer.segments();
             work.box_tests = tracer.work().box_tests;
             work.primitive_tests = tracer.work().primitive_tests;

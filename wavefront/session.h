@@ -27,11 +27,7 @@ class PoolSession : public RenderSession {
           settings_(settings),
           pool_(pool),
           framebuffer_(framebuffer),
-          context_{scene,
-                   settings_,
-                   pool_,
-                   random_seed(settings.seed, settings.sampler),
-                   framebuffer.fixed_point(),
+          context_{scene,  settings_, pool_, random_seed(settings.seed, settings.sampler), framebuffer.fixed_point(),
                    nullptr} {
         report_.record_bytes = record_bytes;
     }
@@ -49,8 +45,8 @@ class PoolSession : public RenderSession {
         return std::max<std::size_t>(static_cast<std::size_t>(pool_.capacity), std::size_t{1} << settings_.split_depth);
     }
 
-    /// Refuses `pool_bytes` for pools and stages, and what the accumulator takes, where there is not as much; where there
-    /// is, makes the accumulator.
+    /// Refuses `pool_bytes` for pools and stages, and what the accumulator takes, where there is not as much; where
+    /// there is, makes the accumulator.
     void take_memory(std::size_t pool_bytes) {
         report_.pool_bytes = pool_bytes + accumulator_bytes(pool_.accumulator, framebuffer_, settings_.threads);
         check_available(report_.pool_bytes,
@@ -58,6 +54,8 @@ class PoolSession : public RenderSession {
         accumulator_ = make_accumulator<Scalar>(pool_.accumulator, framebuffer_, settings_.threads);
         context_.accumulator = accumulator_.get();
     }
+    /// Whether threads share pixels in the unit that begins.
+    void share_pixels(bool are_shared) { accumulator_->share_pixels(are_shared); }
     /// Calls make(thread) in each thread, and ends the setup.
     template <class Make>
     void finish_setup(Make make) {
