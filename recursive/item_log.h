@@ -26,8 +26,11 @@ class ItemLog {
     ItemLog& operator=(const ItemLog&) = delete;
     ~ItemLog() { end_span(); }
 
+    /// Whether an item began that has not stopped.
+    [[nodiscard]] bool is_started() const { return is_started_; }
     /// An item begins at column x of line y.
     void start(std::int64_t x, std::int64_t y) {
+        is_started_ = true;
         if (lane_ == nullptr || (joins_pixels_ && pixels_ > 0 && y == y_)) return;
         end_span();
         x_ = x;
@@ -37,6 +40,7 @@ class ItemLog {
     /// So many pixels of the item were rendered, or parts of their samples.
     void add(std::int64_t pixels) { pixels_ += lane_ == nullptr ? 0 : pixels; }
     void stop() {
+        is_started_ = false;
         if (lane_ != nullptr) end_s_ = omp_get_wtime();
     }
 
@@ -50,6 +54,7 @@ class ItemLog {
     Trace::Lane* lane_;
     const char* name_;
     bool joins_pixels_;
+    bool is_started_ = false;
     std::int64_t x_ = 0, y_ = 0;
     std::int64_t pixels_ = 0;  ///< of the span under way
     double begin_s_ = 0, end_s_ = 0;
@@ -64,10 +69,10 @@ class PixelCost {
     void start(const Tracer& tracer) {
         if (image_ != nullptr) before_ = figure(tracer);
     }
-    template <Addition addition, class Tracer>
+    template <class Tracer>
     void stop(const Tracer& tracer, std::int64_t pixel) {
         if (image_ != nullptr)
-            add_to<addition>(image_->values[static_cast<std::size_t>(pixel)], figure(tracer) - before_);
+            add_to<Addition::Atomic>(image_->values[static_cast<std::size_t>(pixel)], figure(tracer) - before_);
     }
 
   private:

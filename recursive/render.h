@@ -6,6 +6,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -86,27 +87,30 @@ class Session : public RenderSession {
         const double start = omp_get_wtime();
         if (settings_.schedule.kind == LoopSchedule::Kind::Balanced) {
             const BalancedItems items(scene_.width, scene_.height, unit, settings_.threads);
-            const auto run = [&]<Addition addition>() {
-                return loop_over<addition>(items.count(), omp_get_wtime() - start, [&](std::int64_t item, auto trace) {
-                    items.for_each_line(item, scene_.width, unit.pixels,
-                                        [&](const LinePixels& line, std::int64_t first, std::int64_t end) {
-                                            trace(line, unit.first_sample + first, unit.first_sample + end);
-                                        });
-                });
+            const auto visit = [&](std::int64_t item, const TraceLine& trace) {
+                items.for_each_line(item, scene_.width, unit.pixels,
+                                    [&](const LinePixels& line, std::int64_t first, std::int64_t end) {
+                                        trace(line, unit.first_sample + first, unit.first_sample + end);
+                                    });
             };
-            return items.splits_pixels() ? run.template operator()<Addition::Atomic>()
-                                         : run.template operator()<Addition::Plain>();
+            return loop_over(items.count(), visit, items.splits_pixels() ? Addition::Atomic : Addition::Plain, start);
         }
         const WorkItems items(scene_.width, scene_.height, settings_.grain, unit.pixels);
-        return loop_over<Addition::Plain>(items.count(), omp_get_wtime() - start, [&](std::int64_t item, auto trace) {
+        const auto visit = [&](std::int64_t item, const TraceLine& trace) {
             items.for_each_line(item, [&](const LinePixels& line) { trace(line, unit.first_sample, unit.end_sample); });
-        });
+        };
+        return loop_over(items.count(), visit, Addition::Plain, start);
     }
 
-    /// Calls visit(item, trace) in a thread for each of the items; visit calls trace(LinePixels, first sample, end
-    /// sample) for each line of its item. `setup_s` is what setting up the items took.
-    template <Addition addition, class Visit>
-    RenderReport loop_over(std::int64_t item_count, double setup_s, Visit visit) {
+    /// Traces samples [first, end) of some pixels.
+    using TraceLine = std::function<void(const LinePixels&, std::int64_t first, std::int64_t end)>;
+    /// Calls what it is given for each line of an item.
+    using VisitItem = std::function<void(std::int64_t item, const TraceLine&)>;
+
+    /// Has each item visited by some thread, which adds to the framebuffer as `addition` says. What passed since
+    /// `start_s` was setup. Compiled once for all schedules: it holds the whole tracer.
+    RenderReport loop_over(std::int64_t item_count, const VisitItem& visit, Addition addition, double start_s) {
+        const double setup_s = omp_get_wtime() - start_s;
         TeamLoop loop(settings_);
         RenderReport report = run_threads(settings_, [&](ThreadWork& work, SampleAudit& audit) {
             Tracer<needs, Scalar, Work, splitting, rules> tracer(scene_, settings_, framebuffer_.fixed_point());
@@ -115,7 +119,8 @@ class Session : public RenderSession {
             PixelCost cost(settings_.cost_image);
             const bool has_squares = framebuffer_.has_squares();
 
-            const auto trace_line = [&](const LinePixels& line, std::int64_t first_sample, std::int64_t end_sample) {
+            const TraceLine trace_line = [&](const LinePixels& line, std::int64_t first, std::int64_t end) {
+                if (!log.is_started()) log.start(line[0] % scene_.width, line[0] / scene_.width);
                 const std::int64_t y = line[0] / scene_.width;
                 for (std::int64_t i = 0; i < line.count; ++i) {
                     const std::int64_t pixel = line[i];
@@ -123,26 +128,24 @@ class Session : public RenderSession {
                     FixedRgb sum{};
                     FixedSquare square;
                     cost.start(tracer);
-                    for (std::int64_t s = first_sample; s < end_sample; ++s) {
+                    for (std::int64_t s = first; s < end; ++s) {
                         const FixedRgb& sample = tracer.template sample<form>(x, y, s);
                         for (int k = 0; k < 3; ++k) sum[k] += sample[k];
                         if (has_squares) square.add(tracer.square(sample));
                     }
-                    cost.stop<addition>(tracer, pixel);
-                    framebuffer_.template add<addition>(pixel, sum);
-                    if (has_squares) framebuffer_.template add_square<addition>(pixel, square);
-                    work.paths += end_sample - first_sample;
-                    progress.add(end_sample - first_sample);
+                    cost.stop(tracer, pixel);
+                    if (addition == Addition::Plain) {
+                        add<Addition::Plain>(pixel, sum, square);
+                    } else {
+                        add<Addition::Atomic>(pixel, sum, square);
+                    }
+                    work.paths += end - first;
+                    progress.add(end - first);
                 }
+                log.add(line.count);
             };
             work.wait_s = loop.run(item_count, [&](std::int64_t item) {
-                bool is_started = false;
-                visit(item, [&](const LinePixels& line, std::int64_t first_sample, std::int64_t end_sample) {
-                    if (!is_started) log.start(line[0] % scene_.width, line[0] / scene_.width);
-                    is_started = true;
-                    trace_line(line, first_sample, end_sample);
-                    log.add(line.count);
-                });
+                visit(item, trace_line);
                 log.stop();
             });
             work.segments = tracer.segments();
@@ -153,6 +156,12 @@ class Session : public RenderSession {
         report.setup_s += setup_s;
         report.seconds += setup_s;
         return report;
+    }
+
+    template <Addition addition>
+    void add(std::int64_t pixel, const FixedRgb& sum, const FixedSquare& square) {
+        framebuffer_.template add<addition>(pixel, sum);
+        if (framebuffer_.has_squares()) framebuffer_.template add_square<addition>(pixel, square);
     }
 
     const CompiledScene<Scalar>& scene_;
