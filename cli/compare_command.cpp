@@ -48,7 +48,7 @@ struct CompareOptions {
     bool roulette = false;
     int threads = 0;
     std::optional<std::string> schedule;
-    std::string grain = "line";
+    std::optional<std::string> grain;
     int repeats = 5;
     bool only_check = false;
     std::string json;
@@ -188,8 +188,8 @@ int compare(const CompareOptions& options) {
     settings.sampler = parse_sampler(options.sampler);
     settings.roulette = options.roulette;
     settings.threads = threads;
-    settings.schedule = options.schedule ? parse_schedule(*options.schedule) : default_schedule();
-    settings.grain = parse_grain(options.grain);
+    settings.schedule = chosen_schedule(options.schedule, options.grain);
+    if (options.grain) settings.grain = parse_grain(*options.grain);
 
     const bool with_peers =
         !options.only_check && settings.split_depth == 0 && !settings.roulette;  // which have neither
@@ -214,19 +214,20 @@ int compare(const CompareOptions& options) {
     }
     print("{}\n", is_same ? "all images are the same" : "THE IMAGES DIFFER");
     if (!options.json.empty() && is_same) {
-        write_json(options.json, {{"scene", scene.name},
-                                  {"width", scene.width},
-                                  {"height", scene.height},
-                                  {"spp", options.spp},
-                                  {"depth", settings.depth},
-                                  {"sampler", to_string(settings.sampler)},
-                                  {"roulette", settings.roulette},
-                                  {"threads", settings.threads},
-                                  {"schedule", to_string(settings.schedule)},
-                                  {"grain", to_string(settings.grain)},
-                                  {"repeats", repeats},
-                                  {"rows", table_json(list)},
-                                  {"environment", environment_json()}});
+        nlohmann::json table{{"scene", scene.name},
+                             {"width", scene.width},
+                             {"height", scene.height},
+                             {"spp", options.spp},
+                             {"depth", settings.depth},
+                             {"sampler", to_string(settings.sampler)},
+                             {"roulette", settings.roulette},
+                             {"threads", settings.threads},
+                             {"schedule", to_string(settings.schedule)},
+                             {"repeats", repeats},
+                             {"rows", table_json(list)},
+                             {"environment", environment_json()}};
+        if (has_grain(settings.schedule)) table["grain"] = to_string(settings.grain);
+        write_json(options.json, table);
     }
     return is_same ? 0 : 1;
 }

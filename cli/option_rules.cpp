@@ -27,6 +27,7 @@ struct OptionRule {
 };
 
 constexpr std::string_view kOwnLoop = "its batches are handed out to whichever thread is free";
+constexpr std::string_view kOwnCut = "which has a cut of its own";
 constexpr std::string_view kListsOnly = "the studies are only listed then";
 
 constexpr OptionRule kRules[] = {
@@ -44,6 +45,8 @@ constexpr OptionRule kRules[] = {
     {"render", "--append", Rule::Needs, "--pool-scope", "shared", "the pool of a thread moves no record"},
     {"render", "--schedule", Rule::Excludes, "--pool-scope", "shared", kOwnLoop},
     {"render", "--grain", Rule::Excludes, "--pool-scope", "shared", kOwnLoop},
+    {"render", "--grain", Rule::Excludes, "--schedule", "balanced", kOwnCut},
+    {"compare", "--grain", Rule::Excludes, "--schedule", "balanced", kOwnCut},
     {"render", "--intersect", Rule::Excludes, "--stage-width", "scalar", "rays are then taken one by one"},
     {"render", "--samples", Rule::Excludes, "--target-error", "", "which samples a pixel gets is for it to decide"},
     {"render", "--every", Rule::Needs, "--checkpoint", "", ""},
@@ -69,11 +72,18 @@ constexpr OptionRule kRules[] = {
 };
 
 bool is_given(const CLI::App& command, std::string_view option, std::string_view value) {
+    if (option == "--engine") return engine_in_effect(command) == value;
     const CLI::Option& found = *command.get_option(std::string(option));
     return found.count() > 0 && (value.empty() || found.results().front() == value);
 }
 
 }  // namespace
+
+std::string engine_in_effect(const CLI::App& render_command) {
+    const CLI::Option& engine = *render_command.get_option("--engine");
+    if (engine.count() > 0) return engine.results().front();
+    return render_command.get_option("--cost-image")->count() > 0 ? "recursive" : "wavefront";
+}
 
 void check_option_rules(const CLI::App& command) {
     for (const OptionRule& rule : kRules) {

@@ -46,15 +46,18 @@ void add_pool_options(CLI::App& command, PoolOptions& options) {
         "How radiance reaches the framebuffer (default: owned, of a shared pool atomic)");
     const auto count = CLI::Range(std::int64_t{1}, std::int64_t{std::numeric_limits<std::int32_t>::max()});
     command
-        .add_option(
-            "--pool-rays", options.rays,
-            "Most records in a pool, or the bytes that they may take: 512KB, 2MB (default: by the bytes of the trees)")
+        .add_option("--pool-rays", options.rays,
+                    "Most records in a pool, or the bytes that they may take: 512KB, 2MB (default: by the bytes of the "
+                    "trees; shared: 65536, or 16384 a thread)")
         ->check([](const std::string& text) {
             parse_pool_rays(text, 1);
             return std::string();
         })
         ->group("Wavefront engine");
-    command.add_option("--pool-batch", options.batch, "Records that a thread takes at a time from a shared pool")
+    command
+        .add_option(
+            "--pool-batch", options.batch,
+            "Records that a thread takes at a time from a shared pool (default: an eighth of its share, at most 4096)")
         ->check(count)
         ->group("Wavefront engine");
 }
@@ -78,12 +81,12 @@ std::int64_t parse_pool_rays(std::string_view text, std::size_t record_bytes) {
     return std::clamp<std::int64_t>((*number << shift) / static_cast<std::int64_t>(record_bytes), 1, kMost);
 }
 
-PoolSettings pool_settings(const PoolOptions& options, std::size_t record_bytes) {
+PoolSettings pool_settings(const PoolOptions& options, std::size_t record_bytes, int threads) {
     PoolSettings settings;
     set(settings.scope, options.scope);
     if (settings.scope == PoolScope::Shared) {
         settings.accumulator = Accumulator::AtomicInt64;
-        settings.capacity = PoolSettings::kSharedCapacity;
+        settings.capacity = shared_capacity(threads);
     }
     set(settings.refill, options.refill);
     set(settings.width, options.width);
@@ -93,8 +96,9 @@ PoolSettings pool_settings(const PoolOptions& options, std::size_t record_bytes)
     set(settings.append, options.append);
     set(settings.accumulator, options.accumulator);
     if (!options.rays.empty()) settings.capacity = parse_pool_rays(options.rays, record_bytes);
-    if (options.batch != 0) settings.batch = options.batch;
-    if (settings.capacity != PoolSettings::kAutomatic) settings.batch = std::min(settings.batch, settings.capacity);
+    if (settings.scope == PoolScope::Shared)
+        settings.batch =
+            options.batch != 0 ? std::min(options.batch, settings.capacity) : shared_batch(settings.capacity, threads);
     if (settings.width == StageWidth::Scalar) {  // streams and beams are made of registers
         settings.intersection = Intersection::Single;
         if (settings.camera == CameraStage::Beam) settings.camera = CameraStage::Fused;

@@ -31,9 +31,9 @@ void add_pool_options(CLI::App& command, PoolOptions& options);
 /// least. Refuses any other text.
 std::int64_t parse_pool_rays(std::string_view text, std::size_t record_bytes);
 
-/// Defaults filled in, for records of `record_bytes`. What is best for a shared pool differs from what is best for
-/// per-thread ones.
-wavefront::PoolSettings pool_settings(const PoolOptions& options, std::size_t record_bytes);
+/// Defaults filled in, for records of `record_bytes` and so many threads. What is best for a shared pool differs from
+/// what is best for per-thread ones.
+wavefront::PoolSettings pool_settings(const PoolOptions& options, std::size_t record_bytes, int threads);
 
 /// What has an effect.
 nlohmann::json to_json(const wavefront::PoolSettings& settings);

@@ -11,6 +11,7 @@
 
 #include "cli/checkpoint.h"
 #include "cli/commands.h"
+#include "cli/option_rules.h"
 #include "cli/options.h"
 #include "cli/pool_options.h"
 #include "cli/print.h"
@@ -42,7 +43,7 @@ struct RenderOptions {
     std::string trace;
     std::string cost_image;
     std::string cost = "tests";
-    std::string engine = "recursive";
+    std::string engine;  ///< empty: the fastest that can do what is asked for
     std::int64_t spp = 100;
     std::int64_t width = 0;  ///< 0: the scene's
     std::int64_t depth = 50;
@@ -54,7 +55,7 @@ struct RenderOptions {
     double target_error = 0;
     int threads = 0;  ///< 0: OpenMP's
     std::optional<std::string> schedule;
-    std::string grain = "line";
+    std::optional<std::string> grain;
     std::string precision = "float";
     bool count_work = false;
     bool is_quiet = false;
@@ -82,8 +83,8 @@ RenderSettings render_settings(const RenderOptions& options) {
     settings.roulette = options.roulette;
     settings.threads = thread_count(options.threads);
     if (options.engine != "wavefront" || options.pool.scope != to_string(wavefront::PoolScope::Shared))
-        settings.schedule = options.schedule ? parse_schedule(*options.schedule) : default_schedule();
-    settings.grain = parse_grain(options.grain);
+        settings.schedule = chosen_schedule(options.schedule, options.grain);
+    if (options.grain) settings.grain = parse_grain(*options.grain);
     settings.count_work = options.count_work || (!options.cost_image.empty() && cost_of(options.cost) == Cost::Tests);
     settings.log_rounds = options.count_work;
     return settings;
@@ -95,7 +96,8 @@ RenderSettings render_settings(const RenderOptions& options) {
 void check_memory(const Scene& scene, const RenderOptions& options, const cluster::Ranks& ranks) {
     std::size_t pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
     if (!options.cost_image.empty()) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(float);
-    if (options.target_error > 0) pixel_bytes += 2 * sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
+    if (options.target_error > 0)
+        pixel_bytes += 2 * sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
     if (!options.checkpoint.file.empty()) pixel_bytes += 5 * sizeof(std::int64_t) + sizeof(std::int32_t);
     check_available(static_cast<std::size_t>(scene.width * scene.height) * pixel_bytes *
                         static_cast<std::size_t>(ranks.on_this_machine()),
@@ -208,7 +210,7 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     check_memory(scene, options, ranks);
     CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;
-    record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.precision));
+    record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.precision), record.settings.threads);
     if (!options.checkpoint.file.empty() && record.engine == "wavefront" && adds_reals(record.pool.accumulator))
         throw InputError("--accumulator: atomic-float and atomic-double have no exact sums to keep in a --checkpoint");
     record.scene_name = scene.name;
@@ -261,7 +263,9 @@ void add_render_command(CLI::App& app, cluster::Ranks& ranks, int& status) {
     command->add_option("scene", options->scene, "Scene file, or the name of a built-in scene (default: paper)");
     command->add_option("-o,--output", options->output, "Image file: .png (sRGB), .exr or .pfm (linear)")
         ->check(check_file_name);
-    command->add_option("--engine", options->engine, "How paths are followed (default: recursive)")
+    command
+        ->add_option("--engine", options->engine,
+                     "How paths are followed (default: wavefront, with --cost-image recursive)")
         ->check(CLI::IsMember({"recursive", "iterative", "wavefront"}));
     command->add_option("--spp", options->spp, "Samples per pixel (default: 100)")
         ->check(CLI::Range(std::int64_t{1}, kMostSpp));
@@ -289,9 +293,10 @@ void add_render_command(CLI::App& app, cluster::Ranks& ranks, int& status) {
     command->add_option("--threads", options->threads, "OpenMP threads (default: OMP_NUM_THREADS)")
         ->check(CLI::Range(1, 4096));
     command->add_option("--schedule", options->schedule,
-                        "static, dynamic or guided, and a chunk: dynamic,4 (default: OMP_SCHEDULE, else dynamic)");
+                        "balanced, or static, dynamic, guided or tasks, and a chunk: dynamic,4 (default: OMP_SCHEDULE, "
+                        "else balanced, with --grain dynamic)");
     command->add_option("--grain", options->grain,
-                        "What a loop iteration renders: pixel, line or tile:N (default: line)");
+                        "What a loop iteration renders, unless balanced: pixel, line or tile:N (default: line)");
     add_pool_options(*command, options->pool);
     command->add_flag("--count-work", options->count_work, "Count box and primitive tests (slower)");
     command
@@ -313,7 +318,10 @@ void add_render_command(CLI::App& app, cluster::Ranks& ranks, int& status) {
     command->add_option("--cost", options->cost, "What is cost there: segments, tests or ns (default: tests)")
         ->check(CLI::IsMember({"segments", "tests", "ns"}));
     command->add_flag("--quiet", options->is_quiet, "Print nothing");
-    command->callback([options, &ranks, &status] { status = render(*options, ranks); });
+    command->callback([options, command, &ranks, &status] {
+        options->engine = engine_in_effect(*command);
+        status = render(*options, ranks);
+    });
 }
 
 }  // namespace raypool::cli

@@ -65,9 +65,10 @@ void print_summary(const RenderRecord& record) {
           record.precision == Precision::Float ? "float" : "double");
     const std::string ranks = record.ranks.empty() ? "" : fmt::format("{} ranks of ", record.ranks.size());
     print("{} engine: {}{} thread{}, {}\n", record.engine, ranks, settings.threads, settings.threads == 1 ? "" : "s",
-          loops_over_image(record)
+          !loops_over_image(record) ? "one pool for all"
+          : has_grain(settings.schedule)
               ? fmt::format("grain {}, schedule {}", to_string(settings.grain), to_string(settings.schedule))
-              : "one pool for all");
+              : fmt::format("schedule {}", to_string(settings.schedule)));
     print_work(settings, report);
     if (record.target_error > 0) print_error(record);
     if (report.pool_bytes > 0)

@@ -37,7 +37,7 @@ json settings_json(const RenderRecord& record) {
                 {"count_work", settings.count_work}};
     if (loops_over_image(record)) {
         result["schedule"] = to_string(settings.schedule);
-        result["grain"] = to_string(settings.grain);
+        if (has_grain(settings.schedule)) result["grain"] = to_string(settings.grain);
     }
     if (record.target_error > 0) result["target_error"] = record.target_error;
     if (record.engine == "wavefront") result["pool"] = to_json(record.pool);

@@ -39,7 +39,7 @@ struct RenderRecord {
     double total_s = 0;
 };
 
-/// Whether the engine hands out parts of the image, so that schedule and grain have an effect.
+/// Whether the engine hands out parts of the image, so that the schedule has an effect.
 bool loops_over_image(const RenderRecord& record);
 
 /// Whether an adaptive render ended without the error that was asked for, which is not what its user wanted.

@@ -1,6 +1,6 @@
 /// What each pixel cost: recorded by the engines that render pixel by pixel, where RenderSettings::cost_image says so.
 ///
-/// Thread safety: a pixel is for the thread that renders it.
+/// Thread safety: pixels are added to atomically.
 #pragma once
 
 #include <cstdint>

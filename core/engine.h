@@ -22,12 +22,18 @@ namespace raypool {
 struct CostImage;
 class Trace;
 
-/// OpenMP's schedule clause. chunk 0 is OpenMP's default for the kind.
+/// How a render is handed out to threads: OpenMP's schedule clause; its taskloop, whose grainsize is the chunk; or
+/// balanced items (core/balanced_items.h), whichever thread is free. chunk 0 is OpenMP's default for the kind.
 struct LoopSchedule {
-    enum class Kind : std::uint8_t { Static, Dynamic, Guided };
-    Kind kind = Kind::Static;
-    int chunk = 0;
+    enum class Kind : std::uint8_t { Static, Dynamic, Guided, Tasks, Balanced };
+    Kind kind = Kind::Balanced;
+    int chunk = 0;  ///< none for balanced items
 };
+
+/// Whether the image is cut by the grain; balanced items have a cut of their own.
+constexpr bool has_grain(const LoopSchedule& schedule) {
+    return schedule.kind != LoopSchedule::Kind::Balanced;
+}
 
 /// What one iteration of the parallel loop renders.
 struct Grain {

@@ -1,7 +1,7 @@
 /// The framebuffer: three int64 fixed-point sums a pixel, interleaved (r, g, b, r, g, b, ...), row 0 at the top.
 ///
 /// Integer addition is exact and has no order, so any engine, schedule or thread count that adds the same samples makes
-/// the same bits. Not synchronised: whoever adds must own the pixel, or add atomically to sums().
+/// the same bits. Whoever adds must own the pixel meanwhile, or add atomically.
 /// The step is 2^-k with k chosen so that no render can overflow: spp samples of the scene's greatest radiance fit. It
 /// is the same for all renders of up to 16,384 samples a pixel.
 /// On request it also keeps the sum of squares of the samples of each pixel, exact and free of order too: the second
@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -75,6 +76,19 @@ struct FixedPoint {
     }
 };
 
+/// Plain additions are right as long as no two threads add to a pixel.
+enum class Addition : bool { Plain, Atomic };
+
+/// Adds to a sum of a pixel.
+template <Addition addition, class Sum>
+void add_to(Sum& sum, Sum value) {
+    if constexpr (addition == Addition::Atomic) {
+        std::atomic_ref(sum).fetch_add(value, std::memory_order_relaxed);
+    } else {
+        sum += value;
+    }
+}
+
 /// Whether a framebuffer keeps second moments.
 enum class Moments : bool { First, Second };
 
@@ -131,13 +145,15 @@ class Framebuffer {
     [[nodiscard]] std::int64_t height() const { return height_; }
     [[nodiscard]] const FixedPoint& fixed_point() const { return fixed_; }
 
+    template <Addition addition = Addition::Plain>
     void add(std::int64_t pixel, const FixedRgb& sample) {
-        for (int i = 0; i < 3; ++i) sums_[static_cast<std::size_t>(3 * pixel + i)] += sample[i];
+        for (int i = 0; i < 3; ++i) add_to<addition>(sums_[static_cast<std::size_t>(3 * pixel + i)], sample[i]);
     }
     /// Only where it keeps second moments.
+    template <Addition addition = Addition::Plain>
     void add_square(std::int64_t pixel, const FixedSquare& square) {
-        squares_[static_cast<std::size_t>(2 * pixel)] += square.low;
-        squares_[static_cast<std::size_t>(2 * pixel + 1)] += square.high;
+        add_to<addition>(squares_[static_cast<std::size_t>(2 * pixel)], square.low);
+        add_to<addition>(squares_[static_cast<std::size_t>(2 * pixel + 1)], square.high);
     }
     [[nodiscard]] FixedSquare square(std::size_t pixel) const { return {squares_[2 * pixel], squares_[2 * pixel + 1]}; }
     [[nodiscard]] bool has_squares() const { return !squares_.empty(); }

@@ -132,7 +132,9 @@ class OpenMpState {
   public:
     explicit OpenMpState(const LoopSchedule& schedule) : dynamic_(omp_get_dynamic()) {
         omp_get_schedule(&kind_, &chunk_);
-        constexpr omp_sched_t kKinds[] = {omp_sched_static, omp_sched_dynamic, omp_sched_guided};
+        constexpr omp_sched_t kKinds[] = {omp_sched_static, omp_sched_dynamic, omp_sched_guided,
+                                          omp_sched_dynamic,   // tasks have none
+                                          omp_sched_dynamic};  // balanced items go one by one
         omp_set_schedule(kKinds[static_cast<int>(schedule.kind)], schedule.chunk);
         omp_set_dynamic(0);
     }
@@ -177,9 +179,9 @@ inline void count_setup(const RenderSettings& settings, double start_s, int thre
 }
 
 /// Runs body(ThreadWork&, SampleAudit&) in settings.threads OpenMP threads under settings.schedule, denormals flushed.
-/// Where OpenMP gives fewer threads, the report and the trace are of those. The body must end in a worksharing loop
-/// with nowait; what a thread then waits for the others is measured here. What it throws, this throws; a body with
-/// barriers must throw nothing, since the others would wait for ever.
+/// Where OpenMP gives fewer threads, the report and the trace are of those. The body must end in a TeamLoop or a
+/// worksharing loop with nowait; what a thread then waits for the others is measured here. What it throws, this throws;
+/// a body with barriers must throw nothing, since the others would wait for ever.
 template <class Body>
 RenderReport run_threads(const RenderSettings& settings, Body body) {
     RenderReport report;

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 
@@ -13,12 +14,6 @@
 
 namespace raypool {
 
-namespace {
-
-constexpr std::string_view kScheduleNames[] = {"static", "dynamic", "guided"};
-
-}  // namespace
-
 std::optional<std::int64_t> parse_integer(std::string_view text, std::int64_t least, std::int64_t most) {
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -26,21 +21,39 @@ std::optional<std::int64_t> parse_integer(std::string_view text, std::int64_t le
     return value;
 }
 
-LoopSchedule parse_schedule(std::string_view text, std::string_view source) {
+namespace {
+
+constexpr std::string_view kScheduleNames[] = {"static", "dynamic", "guided", "tasks", "balanced"};
+
+/// Of these kinds, with a chunk where the kind may have one.
+std::optional<LoopSchedule> read_schedule(std::string_view text, std::initializer_list<LoopSchedule::Kind> kinds) {
+    using Kind = LoopSchedule::Kind;
     const std::size_t comma = text.find(',');
     const std::string_view name = text.substr(0, comma);
-    for (int i = 0; i < 3; ++i) {
-        if (name != kScheduleNames[i]) continue;
-        LoopSchedule schedule{static_cast<LoopSchedule::Kind>(i), 0};
+    for (const Kind kind : kinds) {
+        if (name != kScheduleNames[static_cast<int>(kind)]) continue;
+        LoopSchedule schedule{kind, 0};
         if (comma == std::string_view::npos) return schedule;
+        if (kind == Kind::Balanced) break;
         const auto chunk = parse_integer(text.substr(comma + 1), 1, std::numeric_limits<int>::max());
         if (chunk) {
             schedule.chunk = static_cast<int>(*chunk);
             return schedule;
         }
     }
-    throw InputError(fmt::format(
-        "{}: must be static, dynamic or guided, with an optional chunk >= 1 as in dynamic,4, got {}", source, text));
+    return std::nullopt;
+}
+
+}  // namespace
+
+LoopSchedule parse_schedule(std::string_view text) {
+    using Kind = LoopSchedule::Kind;
+    const auto schedule = read_schedule(text, {Kind::Static, Kind::Dynamic, Kind::Guided, Kind::Tasks, Kind::Balanced});
+    if (schedule) return *schedule;
+    throw InputError(
+        fmt::format("--schedule: must be balanced, or static, dynamic, guided or tasks with an optional chunk >= 1 as "
+                    "in dynamic,4, got {}",
+                    text));
 }
 
 std::string to_string(const LoopSchedule& schedule) {
@@ -80,13 +93,23 @@ std::string to_string(Sampler sampler) {
     return sampler == Sampler::Sobol ? "sobol" : "independent";
 }
 
-LoopSchedule default_schedule() {
+std::optional<LoopSchedule> schedule_of_environment() {
     const char* said = std::getenv("OMP_SCHEDULE");
-    if (said == nullptr) return {LoopSchedule::Kind::Dynamic, 0};
+    if (said == nullptr) return std::nullopt;
     std::string text;
     for (const char c : std::string_view(said))
         if (c != ' ' && c != '\t') text += 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return parse_schedule(text, "OMP_SCHEDULE");
+    using Kind = LoopSchedule::Kind;
+    const auto schedule = read_schedule(text, {Kind::Static, Kind::Dynamic, Kind::Guided});
+    if (schedule) return *schedule;
+    throw InputError(fmt::format(
+        "OMP_SCHEDULE: must be static, dynamic or guided, with an optional chunk >= 1 as in dynamic,4, got {}", text));
+}
+
+LoopSchedule chosen_schedule(const std::optional<std::string>& schedule, const std::optional<std::string>& grain) {
+    if (schedule) return parse_schedule(*schedule);
+    if (const auto said = schedule_of_environment()) return *said;
+    return {grain ? LoopSchedule::Kind::Dynamic : LoopSchedule::Kind::Balanced, 0};
 }
 
 void set_width(Scene& scene, std::int64_t width) {

@@ -11,8 +11,8 @@
 
 namespace raypool {
 
-/// static, dynamic or guided, with an optional chunk: "dynamic,4". A refusal names `source`, where the text is from.
-LoopSchedule parse_schedule(std::string_view text, std::string_view source = "--schedule");
+/// balanced; or static, dynamic, guided or tasks, with an optional chunk: "dynamic,4".
+LoopSchedule parse_schedule(std::string_view text);
 std::string to_string(const LoopSchedule& schedule);
 
 /// pixel, line or tile:N.
@@ -23,10 +23,14 @@ std::string to_string(const Grain& grain);
 Sampler parse_sampler(std::string_view text);
 std::string to_string(Sampler sampler);
 
-/// What OMP_SCHEDULE says, in upper or lower case and with blanks as OpenMP has it, and dynamic where there is none:
-/// equal lines are not equal work. What --schedule refuses is refused: of `auto` and of the modifiers monotonic: and
-/// nonmonotonic: a record could not say what they came to.
-LoopSchedule default_schedule();
+/// What OMP_SCHEDULE says, if it is set, in upper or lower case and with blanks as OpenMP has it: static, dynamic or
+/// guided. All else is refused: of `auto` and of the modifiers monotonic: and nonmonotonic: a record could not say what
+/// they came to.
+std::optional<LoopSchedule> schedule_of_environment();
+
+/// What --schedule says, else OMP_SCHEDULE; else items are balanced, or, where there is a --grain, its items go to
+/// whichever thread is free: equal lines are not equal work.
+LoopSchedule chosen_schedule(const std::optional<std::string>& schedule, const std::optional<std::string>& grain);
 
 /// The whole text as a number in [least, most], or nothing.
 std::optional<std::int64_t> parse_integer(std::string_view text, std::int64_t least, std::int64_t most);

@@ -11,39 +11,50 @@
 
 namespace raypool::recursive {
 
-/// The spans of one thread's work items: one for each line or tile. Single pixels would be millions, so those of a line
-/// that a thread renders one after the other share a span.
+/// The spans of one thread's work items: one for each line, tile or balanced item. Single pixels would be millions, so
+/// those of a line that a thread renders one after the other share a span.
 class ItemLog {
   public:
     ItemLog(const RenderSettings& settings, int thread)
-        : lane_(settings.trace == nullptr ? nullptr : &settings.trace->lane(thread)), grain_(settings.grain.kind) {}
+        : lane_(settings.trace == nullptr ? nullptr : &settings.trace->lane(thread)) {
+        constexpr const char* kNames[] = {"pixels", "line", "tile"};
+        const bool is_balanced = settings.schedule.kind == LoopSchedule::Kind::Balanced;
+        name_ = is_balanced ? "item" : kNames[static_cast<int>(settings.grain.kind)];
+        joins_pixels_ = !is_balanced && settings.grain.kind == Grain::Kind::Pixel;
+    }
     ItemLog(const ItemLog&) = delete;
     ItemLog& operator=(const ItemLog&) = delete;
     ~ItemLog() { end_span(); }
 
-    void start(const PixelRange& range) {
-        if (lane_ == nullptr || (grain_ == Grain::Kind::Pixel && pixels_ > 0 && range.y_begin == y_)) return;
+    /// Whether an item began that has not stopped.
+    [[nodiscard]] bool is_started() const { return is_started_; }
+    /// An item begins at column x of line y.
+    void start(std::int64_t x, std::int64_t y) {
+        is_started_ = true;
+        if (lane_ == nullptr || (joins_pixels_ && pixels_ > 0 && y == y_)) return;
         end_span();
-        x_ = range.x_begin;
-        y_ = range.y_begin;
+        x_ = x;
+        y_ = y;
         begin_s_ = omp_get_wtime();
     }
-    /// So many pixels of the item were rendered.
+    /// So many pixels of the item were rendered, or parts of their samples.
     void add(std::int64_t pixels) { pixels_ += lane_ == nullptr ? 0 : pixels; }
     void stop() {
+        is_started_ = false;
         if (lane_ != nullptr) end_s_ = omp_get_wtime();
     }
 
   private:
     void end_span() {
         if (pixels_ == 0) return;
-        constexpr const char* kNames[] = {"pixels", "line", "tile"};
-        lane_->span(kNames[static_cast<int>(grain_)], begin_s_, end_s_, {{{"x", x_}, {"y", y_}, {"pixels", pixels_}}});
+        lane_->span(name_, begin_s_, end_s_, {{{"x", x_}, {"y", y_}, {"pixels", pixels_}}});
         pixels_ = 0;
     }
 
     Trace::Lane* lane_;
-    Grain::Kind grain_;
+    const char* name_;
+    bool joins_pixels_;
+    bool is_started_ = false;
     std::int64_t x_ = 0, y_ = 0;
     std::int64_t pixels_ = 0;  ///< of the span under way
     double begin_s_ = 0, end_s_ = 0;
@@ -60,7 +71,8 @@ class PixelCost {
     }
     template <class Tracer>
     void stop(const Tracer& tracer, std::int64_t pixel) {
-        if (image_ != nullptr) image_->values[static_cast<std::size_t>(pixel)] += figure(tracer) - before_;
+        if (image_ != nullptr)
+            add_to<Addition::Atomic>(image_->values[static_cast<std::size_t>(pixel)], figure(tracer) - before_);
     }
 
   private:

@@ -6,12 +6,15 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <functional>
 
 #include <fmt/format.h>
 
+#include "core/balanced_items.h"
 #include "core/engine.h"
 #include "core/error.h"
 #include "core/loop.h"
+#include "core/team_loop.h"
 #include "recursive/item_log.h"
 #include "recursive/tracer.h"
 
@@ -80,44 +83,71 @@ class Session : public RenderSession {
 
   private:
     RenderReport render(const RenderUnit& unit) override {
+        if (path_count(scene_, unit) == 0) return {};
         const double start = omp_get_wtime();
+        if (settings_.schedule.kind == LoopSchedule::Kind::Balanced) {
+            const BalancedItems items(scene_.width, scene_.height, unit, settings_.threads);
+            const auto visit = [&](std::int64_t item, const TraceLine& trace) {
+                items.for_each_line(item, scene_.width, unit.pixels,
+                                    [&](const LinePixels& line, std::int64_t first, std::int64_t end) {
+                                        trace(line, unit.first_sample + first, unit.first_sample + end);
+                                    });
+            };
+            return loop_over(items.count(), visit, items.splits_pixels() ? Addition::Atomic : Addition::Plain, start);
+        }
         const WorkItems items(scene_.width, scene_.height, settings_.grain, unit.pixels);
-        const double setup_s = omp_get_wtime() - start;
+        const auto visit = [&](std::int64_t item, const TraceLine& trace) {
+            items.for_each_line(item, [&](const LinePixels& line) { trace(line, unit.first_sample, unit.end_sample); });
+        };
+        return loop_over(items.count(), visit, Addition::Plain, start);
+    }
+
+    /// Traces samples [first, end) of some pixels.
+    using TraceLine = std::function<void(const LinePixels&, std::int64_t first, std::int64_t end)>;
+    /// Calls what it is given for each line of an item.
+    using VisitItem = std::function<void(std::int64_t item, const TraceLine&)>;
+
+    /// Has each item visited by some thread, which adds to the framebuffer as `addition` says. What passed since
+    /// `start_s` was setup. Compiled once for all schedules: it holds the whole tracer.
+    RenderReport loop_over(std::int64_t item_count, const VisitItem& visit, Addition addition, double start_s) {
+        const double setup_s = omp_get_wtime() - start_s;
+        TeamLoop loop(settings_);
         RenderReport report = run_threads(settings_, [&](ThreadWork& work, SampleAudit& audit) {
             Tracer<needs, Scalar, Work, splitting, rules> tracer(scene_, settings_, framebuffer_.fixed_point());
             ProgressBatch progress(settings_.progress);
             ItemLog log(settings_, omp_get_thread_num());
             PixelCost cost(settings_.cost_image);
             const bool has_squares = framebuffer_.has_squares();
-            const std::int64_t samples = unit.end_sample - unit.first_sample;
 
-#pragma omp for schedule(runtime) nowait
-            for (std::int64_t item = 0; item < items.count(); ++item) {
-                const PixelRange range = items.range(item);
-                log.start(range);
-                items.for_each_line(item, [&](const LinePixels& line) {
-                    const std::int64_t y = line[0] / scene_.width;
-                    for (std::int64_t i = 0; i < line.count; ++i) {
-                        const std::int64_t pixel = line[i];
-                        const std::int64_t x = pixel - y * scene_.width;
-                        FixedRgb sum{};
-                        FixedSquare square;
-                        cost.start(tracer);
-                        for (std::int64_t s = unit.first_sample; s < unit.end_sample; ++s) {
-                            const FixedRgb& sample = tracer.template sample<form>(x, y, s);
-                            for (int k = 0; k < 3; ++k) sum[k] += sample[k];
-                            if (has_squares) square.add(tracer.square(sample));
-                        }
-                        cost.stop(tracer, pixel);
-                        framebuffer_.add(pixel, sum);
-                        if (has_squares) framebuffer_.add_square(pixel, square);
-                        work.paths += samples;
-                        progress.add(samples);
+            const TraceLine trace_line = [&](const LinePixels& line, std::int64_t first, std::int64_t end) {
+                if (!log.is_started()) log.start(line[0] % scene_.width, line[0] / scene_.width);
+                const std::int64_t y = line[0] / scene_.width;
+                for (std::int64_t i = 0; i < line.count; ++i) {
+                    const std::int64_t pixel = line[i];
+                    const std::int64_t x = pixel - y * scene_.width;
+                    FixedRgb sum{};
+                    FixedSquare square;
+                    cost.start(tracer);
+                    for (std::int64_t s = first; s < end; ++s) {
+                        const FixedRgb& sample = tracer.template sample<form>(x, y, s);
+                        for (int k = 0; k < 3; ++k) sum[k] += sample[k];
+                        if (has_squares) square.add(tracer.square(sample));
                     }
-                    log.add(line.count);
-                });
+                    cost.stop(tracer, pixel);
+                    if (addition == Addition::Plain) {
+                        add<Addition::Plain>(pixel, sum, square);
+                    } else {
+                        add<Addition::Atomic>(pixel, sum, square);
+                    }
+                    work.paths += end - first;
+                    progress.add(end - first);
+                }
+                log.add(line.count);
+            };
+            work.wait_s = loop.run(item_count, [&](std::int64_t item) {
+                visit(item, trace_line);
                 log.stop();
-            }
+            });
             work.segments = tracer.segments();
             work.box_tests = tracer.work().box_tests;
             work.primitive_tests = tracer.work().primitive_tests;
@@ -126,6 +156,12 @@ class Session : public RenderSession {
         report.setup_s += setup_s;
         report.seconds += setup_s;
         return report;
+    }
+
+    template <Addition addition>
+    void add(std::int64_t pixel, const FixedRgb& sum, const FixedSquare& square) {
+        framebuffer_.template add<addition>(pixel, sum);
+        if (framebuffer_.has_squares()) framebuffer_.template add_square<addition>(pixel, square);
     }
 
     const CompiledScene<Scalar>& scene_;

@@ -28,6 +28,8 @@ class AccumulatorBase {
     AccumulatorBase& operator=(const AccumulatorBase&) = delete;
     virtual ~AccumulatorBase() = default;
     virtual void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int thread) = 0;
+    /// Whether threads share pixels from now on. Only who takes it that they do not must know. For one thread.
+    virtual void share_pixels(bool /*are_shared*/) {}
     /// 0 where it adds to the framebuffer itself.
     [[nodiscard]] virtual std::size_t block_count() const { return 0; }
     virtual void merge(std::size_t /*block*/) {}
@@ -81,40 +83,53 @@ struct Planar {
     }
 };
 
-/// Plain additions are right as long as no two threads add to a pixel.
-enum class Addition : bool { Plain, Atomic };
+/// Deposits as integers, one after the other: converted eight at a time where the processor can.
+template <class Scalar>
+class EightDeposits {
+  public:
+    EightDeposits(const Deposits<Scalar>& deposits, SampleConverter& converter)
+        : deposits_(deposits), converter_(converter) {}
 
-/// Adds deposits, as integers, to sums in either layout.
+    /// For i = 0, 1, 2, ... in turn.
+    RAYPOOL_INLINE FixedRgb fixed(std::size_t i) {
+        if constexpr (x86::kRoundsEight && sizeof(Scalar) == sizeof(float)) {
+            if (i % 8 == 0)
+                are_converted_ = i + 8 <= deposits_.count() &&
+                                 converter_.convert_eight(
+                                     {deposits_.channel(0, i), deposits_.channel(1, i), deposits_.channel(2, i)}, fixed_);
+            if (are_converted_) return {fixed_[0][i % 8], fixed_[1][i % 8], fixed_[2][i % 8]};
+        }
+        return converter_.convert<Scalar>(deposits_.radiance(i));
+    }
+
+  private:
+    const Deposits<Scalar>& deposits_;
+    SampleConverter& converter_;
+    bool are_converted_ = false;
+    std::int64_t fixed_[3][8];
+};
+
+/// Adds deposits, as integers, to sums in either layout: those of a pixel that follow each other at once, since an
+/// atomic addition takes longer than all the rest, and by far where threads want the same pixel.
 template <Addition addition, class Layout, class Scalar>
 void add_integers(const Layout& layout, const Deposits<Scalar>& deposits, SampleConverter& converter) {
-    const auto add = [](std::int64_t& sum, std::int64_t value) {
-        if constexpr (addition == Addition::Atomic) {
-            std::atomic_ref(sum).fetch_add(value, std::memory_order_relaxed);
-        } else {
-            sum += value;
-        }
-    };
-    std::size_t begin = 0;
-    if constexpr (x86::kRoundsEight && sizeof(Scalar) == sizeof(float)) {
-        while (layout.squares == nullptr && begin + 8 <= deposits.count()) {
-            std::int64_t fixed[3][8];
-            if (!converter.convert_eight(
-                    {deposits.channel(0, begin), deposits.channel(1, begin), deposits.channel(2, begin)}, fixed))
-                break;
-            for (std::size_t i = 0; i < 8; ++i)
-                for (int k = 0; k < 3; ++k) add(layout.at(deposits.pixel(begin + i), k), fixed[k][i]);
-            begin += 8;
-        }
-    }
-    for (std::size_t i = begin; i < deposits.count(); ++i) {
-        const FixedRgb fixed = converter.convert<Scalar>(deposits.radiance(i));
-        for (int k = 0; k < 3; ++k) add(layout.at(deposits.pixel(i), k), fixed[static_cast<std::size_t>(k)]);
-        // A path that is not split deposits once, so that a deposit is a whole sample.
-        if (layout.squares != nullptr) {
-            const FixedSquare square = converter.square(fixed);
-            std::int64_t* digits = layout.squares + 2 * std::size_t{deposits.pixel(i)};
-            add(digits[0], square.low);
-            add(digits[1], square.high);
+    const bool has_squares = layout.squares != nullptr;
+    EightDeposits<Scalar> eight(deposits, converter);
+    for (std::size_t i = 0; i < deposits.count();) {
+        const std::uint32_t pixel = deposits.pixel(i);
+        FixedRgb sum{};
+        FixedSquare square;
+        do {
+            const FixedRgb fixed = eight.fixed(i);
+            for (std::size_t k = 0; k < 3; ++k) sum[k] += fixed[k];
+            // A path that is not split deposits once, so that a deposit is a whole sample.
+            if (has_squares) square.add(converter.square(fixed));
+        } while (++i < deposits.count() && deposits.pixel(i) == pixel);
+        for (int k = 0; k < 3; ++k) add_to<addition>(layout.at(pixel, k), sum[static_cast<std::size_t>(k)]);
+        if (has_squares) {
+            std::int64_t* digits = layout.squares + 2 * std::size_t{pixel};
+            add_to<addition>(digits[0], square.low);
+            add_to<addition>(digits[1], square.high);
         }
     }
 }
@@ -124,42 +139,59 @@ inline std::int64_t* squares_of(Framebuffer& framebuffer) {
     return framebuffer.has_squares() ? framebuffer.squares().data() : nullptr;
 }
 
-/// Adds to the framebuffer itself.
-template <class Scalar, Addition addition>
-class InterleavedInt64 : public AccumulatorBase<Scalar> {
+/// Adds to sums of all threads: of Addition::Plain, atomically only where threads share pixels.
+template <class Scalar, class Layout, Addition addition>
+class SharedInt64 : public AccumulatorBase<Scalar> {
   public:
-    explicit InterleavedInt64(Framebuffer& framebuffer) : sums_{framebuffer.sums().data(), squares_of(framebuffer)} {}
-    void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) override {
-        add_integers<addition>(sums_, deposits, converter);
+    explicit SharedInt64(const Layout& layout) : layout_(layout) {}
+    void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) final {
+        if (addition_ == Addition::Plain) {
+            add_integers<Addition::Plain>(layout_, deposits, converter);
+        } else {
+            add_integers<Addition::Atomic>(layout_, deposits, converter);
+        }
     }
+    void share_pixels(bool are_shared) final { addition_ = are_shared ? Addition::Atomic : addition; }
+
+  protected:
+    Layout layout_;
 
   private:
-    Interleaved sums_;
+    Addition addition_ = addition;
+};
+
+/// Adds to the framebuffer itself.
+template <class Scalar, Addition addition>
+class InterleavedInt64 : public SharedInt64<Scalar, Interleaved, addition> {
+  public:
+    explicit InterleavedInt64(Framebuffer& framebuffer)
+        : SharedInt64<Scalar, Interleaved, addition>({framebuffer.sums().data(), squares_of(framebuffer)}) {}
 };
 
 /// Adds to three planes, which merge() puts into the framebuffer.
 template <class Scalar, Addition addition>
-class PlanarInt64 : public AccumulatorBase<Scalar> {
+class PlanarInt64 : public SharedInt64<Scalar, Planar, addition> {
+    using Base = SharedInt64<Scalar, Planar, addition>;
+
   public:
     explicit PlanarInt64(Framebuffer& framebuffer)
-        : sums_(framebuffer.sums()),
-          planes_(sums_.size()),
-          planar_{planes_.data(), squares_of(framebuffer), sums_.size() / 3} {}
-    void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) override {
-        add_integers<addition>(planar_, deposits, converter);
-    }
-    [[nodiscard]] std::size_t block_count() const override { return block_count_of(planar_.pixel_count); }
+        : PlanarInt64(framebuffer, Zeros<std::int64_t>(framebuffer.sums().size())) {}
+    [[nodiscard]] std::size_t block_count() const override { return block_count_of(this->layout_.pixel_count); }
     void merge(std::size_t block) override {
-        const std::size_t end = std::min((block + 1) * kBlockPixels, planar_.pixel_count);
+        const std::size_t end = std::min((block + 1) * kBlockPixels, this->layout_.pixel_count);
         for (std::size_t pixel = block * kBlockPixels; pixel < end; ++pixel)
             for (int k = 0; k < 3; ++k)
-                Interleaved{sums_.data(), nullptr}.at(pixel, k) += std::exchange(planar_.at(pixel, k), 0);
+                Interleaved{sums_.data(), nullptr}.at(pixel, k) += std::exchange(this->layout_.at(pixel, k), 0);
     }
 
   private:
+    PlanarInt64(Framebuffer& framebuffer, Zeros<std::int64_t> planes)
+        : Base({planes.data(), squares_of(framebuffer), framebuffer.sums().size() / 3}),
+          sums_(framebuffer.sums()),
+          planes_(std::move(planes)) {}
+
     std::span<std::int64_t> sums_;
     Zeros<std::int64_t> planes_;
-    Planar planar_;
 };
 
 /// A framebuffer for each thread, of which merge() reads those blocks that the thread has added to.

@@ -8,6 +8,8 @@
 
 #include <omp.h>
 
+#include "core/balanced_items.h"
+#include "core/team_loop.h"
 #include "wavefront/append.h"
 #include "wavefront/session.h"
 #include "wavefront/stages.h"
@@ -40,17 +42,19 @@ class ThreadPool {
                Stages<needs, Real, Work, splitting>::bytes(context, capacity);
     }
 
-    /// Brings in paths, and makes room for them by rounds.
-    void add(CameraPaths paths) {
+    /// Brings in paths, and makes room for them by rounds: the pool holds at most `most` records, if it can hold as
+    /// many.
+    void add(CameraPaths paths, std::int64_t most, ProgressBatch& progress) {
+        const std::size_t capacity = std::min(camera_capacity_, static_cast<std::size_t>(most));
         while (!paths.is_done()) {
-            const std::size_t wanted =
-                std::min({kCameraChunk, camera_capacity_, static_cast<std::size_t>(paths.left())});
-            if (count_ + wanted > camera_capacity_) {
+            const std::size_t wanted = std::min({kCameraChunk, capacity, static_cast<std::size_t>(paths.left())});
+            if (count_ + wanted > capacity) {
                 do round();
                 while (context_.pool.refill == Refill::Drain && count_ > 0);
             } else {
                 count_ += stages_.generate(records_, count_, paths.take(static_cast<std::int64_t>(wanted)));
                 count_ += stages_.take_overflow(records_, count_);
+                progress.add(static_cast<std::int64_t>(wanted));
             }
         }
     }
@@ -77,7 +81,7 @@ class ThreadPool {
     Stages<needs, Real, Work, splitting> stages_;
 };
 
-/// The loop over the image of per-thread pools: work items are handed out by OpenMP, as to the recursive engine.
+/// The loop over the image of per-thread pools: work items are handed out as to the recursive engine.
 template <SceneNeeds needs, class Real, class Work, Splitting splitting>
 class ThreadPoolSession : public PoolSession<ScalarOf<Real>> {
     using Base = PoolSession<ScalarOf<Real>>;
@@ -101,36 +105,49 @@ class ThreadPoolSession : public PoolSession<ScalarOf<Real>> {
         const auto& scene = this->context().scene;
         const RenderSettings& settings = this->context().settings;
         const double start = omp_get_wtime();
+        if (settings.schedule.kind == LoopSchedule::Kind::Balanced) {
+            const BalancedItems items(scene.width, scene.height, unit, settings.threads);
+            this->share_pixels(items.splits_pixels());
+            const CameraPaths paths(unit, scene.width, scene.height);
+            return loop_over(unit, items.count(), start, [&](std::int64_t item, auto add) {
+                const PathRange range = items.range(item);
+                add(paths.part(range.begin, range.end - range.begin), items.most_held(item));
+            });
+        }
         const WorkItems items(scene.width, scene.height, settings.grain, unit.pixels);
+        const auto most = static_cast<std::int64_t>(this->capacity());
+        return loop_over(unit, items.count(), start, [&](std::int64_t item, auto add) {
+            if (unit.pixels == nullptr) {
+                add(CameraPaths(items.range(item), scene.width, unit.first_sample, unit.end_sample), most);
+                return;
+            }
+            items.for_each_line(item, [&](const LinePixels& line) {
+                const std::span pixels(line.list, static_cast<std::size_t>(line.count));
+                add(CameraPaths(pixels, scene.width, unit.first_sample, unit.end_sample), most);
+            });
+        });
+    }
+
+    /// Calls visit(item, add) in a thread for each of the items; visit calls add(CameraPaths, most records to hold).
+    /// Setup, which takes time for a list of pixels only, began at `start_s`.
+    template <class Visit>
+    RenderReport loop_over(const RenderUnit& unit, std::int64_t item_count, double start_s, Visit visit) {
+        const RenderSettings& settings = this->context().settings;
+        TeamLoop loop(settings);
         RenderReport setup;
-        if (unit.pixels != nullptr) count_setup(settings, start, settings.threads, setup);
+        if (unit.pixels != nullptr) count_setup(settings, start_s, settings.threads, setup);
 
         RenderReport report = run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
-            const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-            Pool& pool = *pools_[thread];
+            Pool& pool = *pools_[static_cast<std::size_t>(omp_get_thread_num())];
             pool.stages().begin();
             ProgressBatch progress(settings.progress);
-            const auto add = [&](const CameraPaths& paths) {
-                pool.add(paths);
-                progress.add(paths.left());
-            };
-
-#pragma omp for schedule(runtime) nowait
-            for (std::int64_t item = 0; item < items.count(); ++item) {
-                if (unit.pixels == nullptr) {
-                    add({items.range(item), scene.width, unit.first_sample, unit.end_sample});
-                } else {
-                    items.for_each_line(item, [&](const LinePixels& line) {
-                        add({{line.list, static_cast<std::size_t>(line.count)},
-                             scene.width,
-                             unit.first_sample,
-                             unit.end_sample});
-                    });
-                }
-            }
+            const double waited_s = loop.run(item_count, [&](std::int64_t item) {
+                visit(item, [&](const CameraPaths& paths, std::int64_t most) { pool.add(paths, most, progress); });
+            });
             pool.drain();
             pool.stages().log().finish();
             pool.stages().report(work, audit);
+            work.wait_s += waited_s;
         });
         report.add(setup);
         return report;
@@ -142,7 +159,9 @@ class ThreadPoolSession : public PoolSession<ScalarOf<Real>> {
     std::vector<std::unique_ptr<Pool>> pools_;  ///< by thread
 };
 
-/// The paper's pool: one for all threads, and a barrier after every round.
+/// The paper's pool: one for all threads, and a barrier after every round. Where camera paths enter as soon as there is
+/// room, the last of them leave a pool that only thins out: batches whose records stay in them are then finished, each
+/// by one thread, in place of dozens of rounds with nothing in them but barriers.
 template <SceneNeeds needs, class Real, class Work, Splitting splitting>
 class SharedPoolSession : public PoolSession<ScalarOf<Real>> {
     using Scalar = ScalarOf<Real>;
@@ -186,12 +205,17 @@ class SharedPoolSession : public PoolSession<ScalarOf<Real>> {
             stages.begin();
             ProgressBatch progress(settings.progress);
 
+            bool finishes = false;
             for (bool is_done = false; !is_done;) {
                 const bool takes_camera = pool.is_empty() || this->context().pool.refill == Refill::Regenerate;
 
 #pragma omp for schedule(runtime) nowait
                 for (std::int64_t b = 0; b < pool.batch_count(); ++b) {
                     stages.log().start_batch(b);
+                    if (finishes) {
+                        finish(stages, pool, b);
+                        continue;
+                    }
                     // Every record by one bounce; what survives goes on to the next round ...
                     const std::size_t survivors = stages.advance(pool.records(), pool.first(b), pool.count(b));
                     std::size_t end = stages.pass_on(pool, b, pool.first(b), survivors);
@@ -211,12 +235,23 @@ class SharedPoolSession : public PoolSession<ScalarOf<Real>> {
                 stages.end_round(pool);
                 stages.wait();
                 is_done = pool.is_empty() && camera.is_done();
+                finishes = camera.is_done() && this->context().pool.refill == Refill::Regenerate &&
+                           this->context().pool.append == Append::InPlace;
                 stages.wait();
                 if (thread == 0) stages.log().occupancy(pool.size(), Trace::Event::Kind::Counter);
                 stages.log().end_round();
             }
             stages.report(work, audit);
         });
+    }
+    /// Advances a batch, which has room for all branches of its paths, until it is empty.
+    static void finish(ThreadStages& stages, SharedPool<needs, Scalar>& pool, std::int64_t b) noexcept {
+        const std::size_t first = pool.first(b);
+        for (std::size_t count = pool.count(b); count > 0;) {
+            count = stages.advance(pool.records(), first, count);
+            count += stages.take_overflow(pool.records(), first + count);
+        }
+        stages.pass_on(pool, b, first, 0);
     }
     [[nodiscard]] const std::vector<RoundWork>& rounds(std::size_t thread) const override {
         return stages_[thread]->log().rounds();

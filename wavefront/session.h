@@ -31,11 +31,7 @@ class PoolSession : public RenderSession {
           settings_(settings),
           pool_(with_capacity(pool, scene)),
           framebuffer_(framebuffer),
-          context_{scene,
-                   settings_,
-                   pool_,
-                   random_seed(settings.seed, settings.sampler),
-                   framebuffer.fixed_point(),
+          context_{scene,  settings_, pool_, random_seed(settings.seed, settings.sampler), framebuffer.fixed_point(),
                    nullptr} {
         report_.record_bytes = record_bytes;
         report_.pool_rays = capacity();
@@ -66,6 +62,8 @@ class PoolSession : public RenderSession {
         accumulator_ = make_accumulator<Scalar>(pool_.accumulator, framebuffer_, settings_.threads);
         context_.accumulator = accumulator_.get();
     }
+    /// Whether threads share pixels in the unit that begins.
+    void share_pixels(bool are_shared) { accumulator_->share_pixels(are_shared); }
     /// Calls make(thread) in each thread, and ends the setup.
     template <class Make>
     void finish_setup(Make make) {

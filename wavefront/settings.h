@@ -1,6 +1,7 @@
 /// The knobs of the pool. Each is one experiment's axis (docs/pool.md has the measurement behind every default).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "core/engine.h"
@@ -71,6 +72,20 @@ struct PoolSettings {
     static constexpr std::int64_t kThreadCapacity = 8192;   ///< fits into the second-level cache, with the stages' memory
     static constexpr std::int64_t kSharedCapacity = 65536;  ///< better for a shared pool, whose rounds end in barriers
 };
+
+/// Records of a shared pool for so many threads: a thread's part of a round must take much longer than a barrier.
+constexpr std::int64_t shared_capacity(int threads) {
+    constexpr std::int64_t kLeastShare = 16384;
+    return std::max(PoolSettings::kSharedCapacity, kLeastShare * threads);
+}
+
+/// Records that a thread takes at a time from a shared pool of `capacity`: a thread's part is several batches, so that
+/// dear ones even out, and a batch many registers.
+constexpr std::int64_t shared_batch(std::int64_t capacity, int threads) {
+    constexpr std::int64_t kBatchesAShare = 8;
+    constexpr std::int64_t kLeastBatch = 64;
+    return std::clamp(capacity / (kBatchesAShare * threads), std::min(kLeastBatch, capacity), PoolSettings{}.batch);
+}
 
 /// Whether threads get parts of the image, and not batches of a pool that all share.
 constexpr bool loops_over_image(const PoolSettings& pool) {

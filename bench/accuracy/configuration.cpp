@@ -52,7 +52,6 @@ RenderReport render_into(Framebuffer& framebuffer, const Configuration& configur
     settings.split_depth = configuration.split_depth;
     settings.sampler = configuration.sampler;
     settings.roulette = configuration.roulette;
-    settings.schedule.kind = LoopSchedule::Kind::Dynamic;
     if (configuration.engine == EngineKind::Pool)
         return render_with(wavefront::WavefrontEngine(wavefront::PoolSettings{}), configuration, scene, settings,
                            framebuffer);

@@ -152,10 +152,10 @@ PathCosts record_costs(const StudyScene& scene, const RenderSettings& settings) 
     return costs;
 }
 
-ItemOrder in_order(const PathCosts& costs, const Grain& grain, const CostModel& model) {
+ItemOrder in_order(const PathCosts& costs, const Grain& grain, const CostModel& model, std::size_t capacity) {
     const std::vector<float> segment_costs = costs.segment_costs(model);
     const WorkItems work(costs.width, costs.height, grain);
-    ItemOrder order{{0}, {}, {0}};
+    ItemOrder order{{0}, {}, {{0}, {}}};
     order.cost.reserve(segment_costs.size());
     for (std::int64_t i = 0; i < work.count(); ++i) {
         const PixelRange range = work.range(i);
@@ -167,7 +167,8 @@ ItemOrder in_order(const PathCosts& costs, const Grain& grain, const CostModel& 
             order.cost.insert(order.cost.end(), segment_costs.begin() + costs.first[begin],
                               segment_costs.begin() + costs.first[end]);
         }
-        order.first_path.push_back(static_cast<std::uint32_t>(order.first.size() - 1));
+        order.items.first_path.push_back(static_cast<std::uint32_t>(order.first.size() - 1));
+        order.items.most_held.push_back(capacity);
     }
     return order;
 }

@@ -65,13 +65,14 @@ PathCosts record_costs(const StudyScene& scene, const RenderSettings& settings);
 /// The same paths with every path's segments put in the order in which a loop over the grain takes them, and where each
 /// item of the grain begins: what replay_thread_pools() needs.
 struct ItemOrder {
-    std::vector<std::uint32_t> first;       ///< segment of each path, and the end
-    std::vector<float> cost;                ///< of each segment
-    std::vector<std::uint32_t> first_path;  ///< of each item, and the end
+    std::vector<std::uint32_t> first;  ///< segment of each path, and the end
+    std::vector<float> cost;           ///< of each segment
+    PoolItems items;
 
     [[nodiscard]] SegmentCosts segments() const { return {first, cost}; }
 };
-ItemOrder in_order(const PathCosts& costs, const Grain& grain, const CostModel& model);
+/// For pools of `capacity` paths.
+ItemOrder in_order(const PathCosts& costs, const Grain& grain, const CostModel& model, std::size_t capacity);
 
 /// How well the model tells the time of a line.
 struct CostFit {

@@ -92,7 +92,7 @@ Row render_row(const std::string& name, const Engine& engine, const StudyScene& 
     return {name,
             settings.threads,
             of_loop(to_string(settings.schedule)),
-            of_loop(to_string(settings.grain)),
+            has_grain(settings.schedule) ? of_loop(to_string(settings.grain)) : Value(),
             scene.compiled.width,
             report.seconds,
             static_cast<double>(report.paths()) / report.seconds * 1e-6,

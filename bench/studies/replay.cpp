@@ -27,21 +27,21 @@ struct RealWay {
     const char* schedule;
 };
 constexpr RealWay kRealWays[] = {
-    {"lines, static", "line", "static"},
-    {"lines, static,1", "line", "static,1"},
-    {"lines, dynamic", "line", "dynamic"},
-    {"lines, guided", "line", "guided"},
-    {"pixels, static", "pixel", "static"},
-    {"pixels, static,1", "pixel", "static,1"},
-    {"pixels, dynamic", "pixel", "dynamic"},
-    {"pixels, dynamic,64", "pixel", "dynamic,64"},
-    {"tiles of 16, dynamic", "tile:16", "dynamic"},
+    {"balanced (default)", "pixel", "balanced"},   {"lines, static", "line", "static"},
+    {"lines, static,1", "line", "static,1"},       {"lines, dynamic", "line", "dynamic"},
+    {"lines, guided", "line", "guided"},           {"pixels, static", "pixel", "static"},
+    {"pixels, static,1", "pixel", "static,1"},     {"pixels, dynamic", "pixel", "dynamic"},
+    {"pixels, dynamic,64", "pixel", "dynamic,64"}, {"tiles of 16, dynamic", "tile:16", "dynamic"},
 };
 
 struct GroupedWay {
     const char* group;
     ReplayWay way;
 };
+
+ReplayWay default_pool_way() {
+    return thread_pool_way(kDefaultPool, "pixel", "balanced", wavefront::PoolSettings{}.capacity);
+}
 
 std::vector<GroupedWay> all_ways() {
     using Kind = ReplaySchedule::Kind;
@@ -63,13 +63,16 @@ std::vector<GroupedWay> all_ways() {
     const auto drained = [&](const char* name, std::size_t capacity, std::size_t batch, ReplaySchedule schedule) {
         ways.push_back({"a pool for all threads", {name, ReplayWay::Kind::Drained, {}, schedule, capacity, batch}});
     };
-    drained("65536 rays, batches of 4096 (default)", shared, 4096, kDynamic);
+    ways.push_back({"a pool for all threads",
+                    {"refilled, sizes by threads (default)", ReplayWay::Kind::Regenerated, {}, kDynamic, 0, 0}});
+    drained("65536 rays, batches of 4096", shared, 4096, kDynamic);
     drained("65536 rays, batches of 256", shared, 256, kDynamic);
     drained("65536 rays, contiguous shares", shared, 1, kStatic);
     drained("the whole image, batches of 256", 0, 256, kDynamic);
     drained("the whole image, contiguous shares", 0, 1, kStatic);
 
-    ways.push_back({kThreadPools, thread_pool_way(kDefaultPool, "line", "dynamic", own)});
+    ways.push_back({kThreadPools, default_pool_way()});
+    ways.push_back({kThreadPools, thread_pool_way("a pool each, lines, dynamic", "line", "dynamic", own)});
     ways.push_back({kThreadPools, thread_pool_way("a pool each, lines, static", "line", "static", own)});
     ways.push_back({kThreadPools, thread_pool_way("a pool each, tiles of 4, dynamic", "tile:4", "dynamic", own)});
     ways.push_back({kThreadPools, thread_pool_way("a pool each, pixels, static,1", "pixel", "static,1", own)});
@@ -89,6 +92,13 @@ class Work {
         if (fit_.seconds == 0) fit_ = fit_costs(*scene_, settings_, costs(), repeats_);
         return fit_;
     }
+    /// Of the default pool: the model in proportion.
+    const CostModel& pool_model() {
+        if (pool_model_.segment_s == 0 && pool_model_.test_s == 1)
+            pool_model_ =
+                scaled_to(*fused_pool().engine, *scene_, settings_, costs(), fit().model, std::min(repeats_, 3));
+        return pool_model_;
+    }
     const OpenMpCosts& openmp() {
         if (openmp_.threads.empty()) openmp_ = measure_openmp_costs(core_count());
         return openmp_;
@@ -100,6 +110,7 @@ class Work {
     int repeats_;
     PathCosts costs_;
     CostFit fit_;
+    CostModel pool_model_;
     OpenMpCosts openmp_;
 };
 
@@ -150,12 +161,17 @@ class ReplayStudy : public Study {
 
         std::vector<Case> cases;
         cases.push_back({"replay", "", 1, [=, this] { return replay_all(*work, *scene, settings, most, repeats); }});
+        const auto add_real = [&](const NamedEngine& engine, const ReplayWay& way) {
+            cases.push_back({fmt::format("real, {}", way.name), image_of(*scene, settings), repeats,
+                             [=, this] { return run_real(*work, *scene, settings, *engine.engine, way, real); }});
+        };
         for (const RealWay& way : kRealWays) {
             settings.grain = parse_grain(way.grain);
             settings.schedule = parse_schedule(way.schedule);
-            cases.push_back({fmt::format("real, {}", way.name), image_of(*scene, settings), repeats,
-                             [=, this] { return run_real(*work, *scene, settings, way.name, real); }});
+            add_real(recursive_engine(), loop_way(way.name, way.grain, way.schedule));
         }
+        settings.schedule = LoopSchedule{};
+        add_real(fused_pool(), default_pool_way());
         return cases;
     }
 
@@ -172,7 +188,7 @@ class ReplayStudy : public Study {
         const CostFit& fit = work.fit();
         const int renders = std::min(repeats, 3);
         const CostModel shared = scaled_to(*canonical_pool().engine, scene, settings, costs, fit.model, renders);
-        const CostModel own = scaled_to(*fused_pool().engine, scene, settings, costs, fit.model, renders);
+        const CostModel& own = work.pool_model();
         const auto add_model = [&](const char* engine, const CostModel& model, const Value& error) {
             rows.push_back(sparse_row(all, {{"kind", "model"},
                                             {"way", engine},
@@ -195,9 +211,9 @@ class ReplayStudy : public Study {
             const ReplayWay& way = grouped.way;
             const PreparedWay tests = prepare(way, costs, kTests);
             const PreparedWay time = prepare(way, costs,
-                                             way.kind == ReplayWay::Kind::Loop      ? fit.model
-                                             : way.kind == ReplayWay::Kind::Drained ? shared
-                                                                                    : own);
+                                             way.kind == ReplayWay::Kind::Loop          ? fit.model
+                                             : way.kind == ReplayWay::Kind::ThreadPools ? own
+                                                                                        : shared);
             const std::vector<int> replayed = thread_counts(most);
             std::vector<Row> filled(replayed.size());
             FirstException failure;
@@ -227,30 +243,29 @@ class ReplayStudy : public Study {
 
     /// One thread and more; beside them, how fast each thread is when all do the same; and what a replay with threads
     /// of these speeds makes of it.
-    std::vector<Row> run_real(Work& work, const StudyScene& scene, RenderSettings settings, const char* way,
-                              int threads) const {
-        std::vector<double> items;
-        for (const Tally& tally : work.costs().items(settings.grain)) items.push_back(work.fit().model.seconds(tally));
-        const ReplaySchedule schedule = to_replay(settings.schedule);
+    std::vector<Row> run_real(Work& work, const StudyScene& scene, RenderSettings settings, const Engine& engine,
+                              const ReplayWay& way, int threads) const {
+        const bool is_pool = way.kind == ReplayWay::Kind::ThreadPools;
+        const PreparedWay prepared = prepare(way, work.costs(), is_pool ? work.pool_model() : work.fit().model);
         const double alone = equal_work_seconds(scene, settings, 1)[0];
-        const double one = replay(items, schedule, 1, work.openmp().at(1)).makespan;
+        const double one = prepared.replay(1, work.openmp().at(1)).makespan;
 
         std::vector<Row> rows;
         for (const int n : {1, threads}) {
             if (n == 1 && !rows.empty()) break;  // there is one core only
             std::vector<double> speeds = equal_work_seconds(scene, settings, n);
             for (double& speed : speeds) speed = alone / speed;
-            const Replayed replayed = replay(items, schedule, n, work.openmp().at(n), speeds);
+            const Replayed replayed = prepared.replay(n, work.openmp().at(n), speeds);
             std::vector<double> busy = replayed.work;
             for (std::size_t i = 0; i < busy.size(); ++i) busy[i] /= speeds[i];
 
             settings.threads = n;
-            const Measured measured = measure(*recursive_engine().engine, scene, settings);
+            const Measured measured = measure(engine, scene, settings);
             const RenderReport& report = measured.report;
             const std::vector<double> processor = by_thread(report, &ThreadWork::processor_s);
             rows.push_back(sparse_row(
                 columns(), {{"kind", "real"},
-                            {"way", way},
+                            {"way", way.name},
                             {"threads", n},
                             {"seconds", report.seconds},
                             {"processor_balance", 1 / max_over_mean(processor)},

@@ -21,10 +21,12 @@ struct ReplaySchedule {
         LongestFirst,
         /// Half of what is left in equal chunks, one for each thread, again and again (Hummel, Schonberg and Flynn,
         /// "Factoring", 1992).
-        Factoring
+        Factoring,
+        /// Dynamic, one by one, of items that are cut for so many threads (core/balanced_items.h).
+        Balanced
     };
     Kind kind = Kind::Static;
-    std::int64_t chunk = 0;  ///< 0: OpenMP's default for the kind; of no meaning to the last two kinds
+    std::int64_t chunk = 0;  ///< 0: OpenMP's default for the kind; of no meaning to the last three kinds
 };
 
 /// What running in parallel costs by itself.
@@ -73,14 +75,24 @@ std::vector<std::vector<double>> drained_rounds(const SegmentCosts& segments, st
 /// Rounds with a barrier after each. Threads come to a round in another order each time.
 Replayed replay_rounds(std::span<const std::vector<double>> rounds, const ReplaySchedule& schedule, int threads,
                        const ReplayCosts& costs = {});
+/// A shared pool in batches that threads take as they come, refilled as soon as there is room, in rounds with a barrier
+/// after each: every path of a batch by one segment, and then the first segments of camera paths, a few at a time,
+/// until the batch is full. Once there are no camera paths left, each batch is finished by the thread that takes it.
+Replayed replay_shared_pool(const SegmentCosts& segments, std::size_t capacity, std::size_t batch, int threads,
+                            const ReplayCosts& costs = {});
 /// The bound of every round, added up.
 double makespan_bound(std::span<const std::vector<double>> rounds, int threads);
 
-/// Pools of `capacity` paths, one for each thread, refilled as soon as there is room: a thread fetches the next item (a
-/// range of paths) while its pool has room, and then takes every path of the pool through a segment. So many paths are
-/// in threads' hands before anybody knows what they cost. `first_path` holds the first path of each item, and the end.
-Replayed replay_thread_pools(const SegmentCosts& segments, std::span<const std::uint32_t> first_path,
-                             std::size_t capacity, const ReplaySchedule& schedule, int threads,
-                             const ReplayCosts& costs = {});
+/// Items of the pools of threads: ranges of paths, and how many paths a pool holds at most once it has the item.
+struct PoolItems {
+    std::vector<std::uint32_t> first_path;  ///< of each item, and the end
+    std::vector<std::size_t> most_held;     ///< by item
+};
+
+/// A pool for each thread, refilled as soon as there is room: a thread fetches the next item while its pool has room,
+/// and then takes every path of the pool through a segment. So many paths are in threads' hands before anybody knows
+/// what they cost. `speeds` as in replay().
+Replayed replay_thread_pools(const SegmentCosts& segments, const PoolItems& items, const ReplaySchedule& schedule,
+                             int threads, const ReplayCosts& costs = {}, std::span<const double> speeds = {});
 
 }  // namespace raypool::studies

@@ -219,8 +219,9 @@ Summary summarise_replay(const Table& data) {
         100 * model.numbers("fit_error").at(0)));
     summary.notes.push_back(
         "Pools test rays in streams and packets, so a segment's tests by a single ray stand in for theirs. A path of a "
-        "shared pool stays in its batch; equal shares are cut anew from the rays still alive. Only the loops are held "
-        "against real runs here: what is said of pools is a prediction.");
+        "shared pool stays in its batch; equal shares are cut anew from the rays still alive. Loops and the default "
+        "pool "
+        "are held against real runs here: what is said of other pools is a prediction.");
     summary.notes.push_back(
         "A replay knows balance, chunk fetches and barriers, and nothing of memory, caches or sockets: it bounds "
         "efficiency from above. Beyond the cores of this machine a chunk fetch costs what it costs with all of them, "

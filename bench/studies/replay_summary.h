@@ -6,7 +6,7 @@
 namespace raypool::studies {
 
 /// Ways that findings speak of.
-inline constexpr const char* kDefaultPool = "a pool each, lines, dynamic (default)";
+inline constexpr const char* kDefaultPool = "a pool each, balanced (default)";
 inline constexpr const char* kThreadPools = "a pool for each thread";  ///< a group of ways
 
 Summary summarise_replay(const Table& data);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,21 +19,23 @@ namespace raypool::studies {
 /// The schedules of a tracer that takes one path at a time, or the pools.
 struct ReplayWay {
     enum class Kind : std::uint8_t {
-        Loop,        ///< over the items of a grain
-        Drained,     ///< a shared pool in batches, drained, a barrier after each round
-        ThreadPools  ///< a pool for each thread, over the items of a grain
+        Loop,         ///< over the items of a grain
+        Drained,      ///< a shared pool in batches, drained, a barrier after each round
+        Regenerated,  ///< a shared pool that takes camera paths in every round; its sizes follow the number of threads
+        ThreadPools   ///< a pool for each thread, over the items of a grain
     };
     std::string name;
     Kind kind = Kind::Loop;
-    Grain grain;
-    ReplaySchedule schedule;
+    Grain grain;               ///< of no meaning to balanced items
+    ReplaySchedule schedule;   ///< of loops and of drained rounds
     std::size_t capacity = 0;  ///< of a pool; 0: all paths of the image
     std::size_t batch = 0;     ///< of a drained pool; 1 with a static schedule: equal contiguous shares
 };
 
+/// Tasks are taken to be handed out as chunks are.
 inline ReplaySchedule to_replay(const LoopSchedule& schedule) {
     using Kind = ReplaySchedule::Kind;
-    constexpr Kind kKinds[] = {Kind::Static, Kind::Dynamic, Kind::Guided};
+    constexpr Kind kKinds[] = {Kind::Static, Kind::Dynamic, Kind::Guided, Kind::Dynamic, Kind::Balanced};
     return {kKinds[static_cast<int>(schedule.kind)], schedule.chunk};
 }
 
@@ -52,9 +55,16 @@ inline ReplayWay thread_pool_way(std::string name, std::string_view grain, std::
 
 /// A way with everything about the work prepared, so that thread counts are cheap.
 struct PreparedWay {
-    std::function<Replayed(int threads, const ReplayCosts& costs)> replay;
+    using Speeds = std::span<const double>;
+    std::function<Replayed(int threads, const ReplayCosts& costs, Speeds speeds)> run;
     std::function<double(int threads)> bound;  ///< the shortest makespan
+
+    /// The speeds as in raypool::studies::replay(); rounds know none.
+    [[nodiscard]] Replayed replay(int threads, const ReplayCosts& costs, Speeds speeds = {}) const {
+        return run(threads, costs, speeds);
+    }
 };
+/// The costs outlive it.
 PreparedWay prepare(const ReplayWay& way, const PathCosts& costs, const CostModel& model);
 
 /// A row in which the columns named have values, and all others none.

@@ -30,7 +30,7 @@ constexpr Way kWays[] = {
     {"recursion, lines, static,1", Way::Engine::Recursive, "line", "static,1"},
     {"recursion, lines, dynamic", Way::Engine::Recursive, "line", "dynamic"},
     {"a pool for all threads, batches of 4096", Way::Engine::SharedPool, "line", "dynamic"},
-    {"a pool for each thread, tiles of 8, dynamic", Way::Engine::FusedPool, "tile:8", "dynamic"},
+    {"a pool for each thread, balanced (default)", Way::Engine::FusedPool, "pixel", "balanced"},
 };
 constexpr const char* kBasic = kWays[0].name;
 constexpr const char* kStatic1 = kWays[1].name;

@@ -24,6 +24,8 @@ struct Way {
 };
 constexpr Way kWays[] = {
     {"lines, static (the paper's basic)", "line", "static"},
+    {"balanced (default)", "pixel", "balanced"},
+    {"lines, tasks,1", "line", "tasks,1"},
     {"lines, static,1", "line", "static,1"},
     {"lines, dynamic", "line", "dynamic"},
     {"lines, guided", "line", "guided"},
@@ -33,8 +35,8 @@ constexpr Way kWays[] = {
     {"tiles of 16, dynamic", "tile:16", "dynamic"},
 };
 constexpr const char* kBasic = kWays[0].name;
-constexpr const char* kStatic1 = kWays[1].name;
-constexpr const char* kCollapse = kWays[5].name;
+constexpr const char* kStatic1 = kWays[3].name;
+constexpr const char* kCollapse = kWays[7].name;
 
 class Schedules : public Study {
   public:

@@ -125,7 +125,7 @@ class BadOption(CommandTest):
                 "--samples": ("3", "3:3", "2:1", "0:101", "-1:3", ":", "1:", ":2", "1:2:3", "a:b", "0:1 ", 2**70),
                 "--threads": ("0", "-2", 100000, 2**32, "two"),
                 "--schedule": ("fair", "static,0", "static,-1", "dynamic,", "dynamic,1.5", "guided,2147483648", ",3",
-                               "static,1,2", "Static"),
+                               "static,1,2", "Static", "tasks,0", "balanced,1"),
                 "--grain": ("row", "tile", "tile:", "tile:0", "tile:-8", "tile:65537", "pixel:1", "tile:8x8"),
                 "--target-error": ("0", "-1", "nan", "small", ""),
                 "--precision": ("half", "long double"),

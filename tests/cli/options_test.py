@@ -17,7 +17,7 @@ class OptionThatDoesNothing(CommandTest):
 
     def test_of_a_pool_is_refused_by_engines_without_one(self):
         for option, value in POOL_OPTIONS.items():
-            for engine in ((), ("--engine", "recursive"), ("--engine", "iterative")):
+            for engine in (("--cost-image", "cost.png"), ("--engine", "recursive"), ("--engine", "iterative")):
                 self.assert_idle("render", "scene.json", *engine, option, value, named=[option, "--engine wavefront"])
 
     def test_of_a_shared_pool_is_refused_by_the_pools_of_threads(self):
@@ -29,6 +29,11 @@ class OptionThatDoesNothing(CommandTest):
     def test_of_the_loop_over_the_image_is_refused_by_a_shared_pool(self):
         for option, value in (("--schedule", "dynamic"), ("--schedule", "static,64"), ("--grain", "line")):
             self.assert_idle("render", "scene.json", *SHARED, option, value, named=[option, "--pool-scope shared"])
+
+    def test_of_a_grain_is_refused_by_the_balanced_schedule(self):
+        for command in (("render",), ("compare", "--check")):
+            self.assert_idle(*command, "scene.json", "--schedule", "balanced", "--grain", "line",
+                             named=["--grain", "--schedule balanced"])
 
     def test_of_registers_is_refused_by_scalar_stages(self):
         self.assert_idle("render", "scene.json", *POOL, "--stage-width", "scalar", "--intersect", "stream",
@@ -59,8 +64,8 @@ class OptionThatDoesNothing(CommandTest):
     def test_is_taken_where_it_does_something(self):
         for option, value in POOL_OPTIONS.items():
             self.run_well("render", "scene.json", "--spp", 1, *(POOL if option == "--pool-scope" else SHARED), option, value)
-        for scope in ((), ("--pool-scope", "thread")):
-            self.run_well("render", "scene.json", "--spp", 1, *POOL, *scope, "--schedule", "static,2", "--grain", "pixel")
+        for scope in ((), POOL, (*POOL, "--pool-scope", "thread")):
+            self.run_well("render", "scene.json", "--spp", 1, *scope, "--schedule", "static,2", "--grain", "pixel")
         self.run_well("render", "scene.json", "--spp", 1, "--checkpoint", "c.sums", "--every", 5)
         self.run_well("render", "scene.json", "--spp", 1, "--checkpoint", "c.sums", "--resume")
         self.run_well("render", "scene.json", "--spp", 1, "--cost-image", "cost.pfm", "--cost", "ns")
@@ -114,6 +119,8 @@ class Schedule(CommandTest):
             settings = self.stats("--spp", 1, *pool, "--grain", "pixel", "--schedule", "static")["settings"]
             self.assertEqual((settings["grain"], settings["schedule"]), ("pixel", "static"))
             self.assertFalse({"append", "batch", "batch_schedule"} & settings.get("pool", {}).keys())
+            settings = self.stats("--spp", 1, *pool)["settings"]
+            self.assertEqual((settings["schedule"], "grain" in settings), ("balanced", False))
         settings = self.stats("--spp", 1, *SHARED)["settings"]
         self.assertFalse({"grain", "schedule"} & settings.keys())
         self.assertEqual(settings["pool"]["batch_schedule"], "dynamic")
@@ -122,8 +129,16 @@ class Schedule(CommandTest):
         self.assertNotIn("schedule", said)
 
     def test_is_recorded_with_the_pool_that_was(self):
-        pool = self.stats("--spp", 1, *SHARED, "--stage-width", "scalar", "--pool-rays", 100)["settings"]["pool"]
+        pool = self.stats("--spp", 1, *SHARED, "--stage-width", "scalar", "--pool-rays", 100, "--pool-batch",
+                          1000)["settings"]["pool"]
         self.assertEqual((pool["intersect"], pool["batch"]), ("single", 100))
+
+    def test_of_a_shared_pool_gives_each_thread_several_batches(self):
+        for threads, rays, batch in ((1, 65536, 4096), (2, 65536, 4096), (8, 131072, 2048), (16, 262144, 2048)):
+            pool = self.stats("--spp", 1, *SHARED, "--threads", threads)["settings"]["pool"]
+            self.assertEqual((pool["rays"], pool["batch"]), (rays, batch))
+        pool = self.stats("--spp", 1, *SHARED, "--threads", 4, "--pool-rays", 10_000)["settings"]["pool"]
+        self.assertEqual((pool["rays"], pool["batch"]), (10_000, 312))
 
 
 class TargetError(CommandTest):

@@ -38,6 +38,16 @@ class Small(CommandTest):
             stats, width, height, _ = self.rendered(scene, "--threads", 7, "--grain", grain, "--spp", 5)
             self.assertEqual((width, height, stats["paths"], len(stats["threads"])), (1, 1, 5, 7))
 
+    def test_image_of_one_pixel_is_for_all_threads(self):
+        scene = changed(SCENE, "/image", {"width": 1, "height": 1})
+        hashes = set()
+        for engine in ("recursive", "iterative", "wavefront"):
+            for threads in (1, 2, 5):
+                stats, *_ = self.rendered(scene, "--engine", engine, "--threads", threads, "--spp", 20_000)
+                self.assertEqual(stats["paths"], 20_000)
+                hashes.add(stats["hash"])
+        self.assertEqual(len(hashes), 1)
+
     def test_image_keeps_its_shape_at_another_width(self):
         for width, height in ((1, 1), (4, 3), (80, 60)):
             _, *size, _ = self.rendered(SCENE, "--width", width, "--spp", 1)
@@ -185,8 +195,11 @@ class Render(CommandTest):
         hashes = {
             self.stats("--spp", 3, "--engine", engine, "--threads", threads, "--schedule", schedule, "--grain", grain)["hash"]
             for engine in ("recursive", "iterative", "wavefront")
-            for threads, schedule, grain in ((1, "static", "line"), (2, "dynamic,3", "pixel"), (7, "guided", "tile:4"))
+            for threads, schedule, grain in ((1, "static", "line"), (2, "dynamic,3", "pixel"), (7, "guided", "tile:4"),
+                                             (2, "tasks", "line"), (3, "tasks,5", "pixel"))
         }
+        hashes |= {self.stats("--spp", 3, *engine, "--threads", threads)["hash"]
+                   for engine in ((), ("--engine", "recursive"), ("--engine", "iterative")) for threads in (1, 2, 9)}
         self.assertEqual(len(hashes), 1)
         self.assertNotIn(self.stats("--spp", 3, "--seed", 2**64 - 1)["hash"], hashes)
         self.assertNotIn(self.stats("--spp", 3, "--precision", "double")["hash"], hashes)
@@ -258,7 +271,8 @@ class Stats(CommandTest):
         for said, understood in (("static", "static"), ("dynamic,2", "dynamic,2")):
             self.assertEqual(self.stats("--spp", 1, environment={"OMP_SCHEDULE": said})["settings"]["schedule"],
                              understood)
-        self.assertEqual(self.stats("--spp", 1)["settings"]["schedule"], "dynamic")
+        settings = self.stats("--spp", 1)["settings"]
+        self.assertEqual((settings["engine"], settings["schedule"]), ("wavefront", "balanced"))
 
     def test_are_in_the_header_of_an_exr_file(self):
         stats = self.stats("--spp", 2, "--seed", 2**64 - 1, "--grain", "tile:4", "-o", "out.exr")
@@ -325,8 +339,9 @@ class Trace(CommandTest):
         self.assertEqual(trace["otherData"]["raypool.hash"], stats["hash"])
 
     def test_of_other_engines_shows_their_items(self):
-        for engine, items in (("recursive", "line"), ("iterative", "line"), ("wavefront", "round")):
-            _, trace = self.trace("--engine", engine)
+        for engine, items in ((("--engine", "recursive"), "item"), (("--engine", "iterative", "--grain", "line"), "line"),
+                              ((), "round")):
+            _, trace = self.trace(*engine)
             self.assert_schema(trace)
             self.assertIn(items, {name for thread in (0, 1) for name, _, _ in self.spans(trace, thread)})
 
@@ -334,8 +349,8 @@ class Trace(CommandTest):
         result = self.run_well("render", "scene.json", "--spp", 1, "--trace", "trace.json")
         self.assertRegex(result.stdout, r"\ntrace\.json: \d+ events\n\Z")
         self.write("scene.json", changed(SCENE, "/image", {"width": 400, "height": 300}))
-        result = self.run_well("render", "scene.json", "--spp", 1, "--threads", 1, "--grain", "tile:1", "--trace",
-                               "trace.json")
+        result = self.run_well("render", "scene.json", "--spp", 1, "--threads", 1, "--engine", "recursive", "--grain",
+                               "tile:1", "--trace", "trace.json")
         left_out = 400 * 300 + 2 - 100_000
         self.assertIn(f"\ntrace.json: 100000 events, and {left_out} that are left out", result.stdout)
         trace = json.loads((self.folder / "trace.json").read_text())
@@ -346,6 +361,7 @@ class CostImage(CommandTest):
     def costs(self, *arguments):
         stats = self.stats("--spp", 3, "--cost-image", "cost.pfm", *arguments)
         self.assertEqual(stats["hash"], self.stats("--spp", 3)["hash"])
+        self.assertIn(stats["settings"]["engine"], ("recursive", "iterative"))
         _, _, values = self.pixels("cost.pfm")
         self.assertEqual(values[0::3], values[1::3])
         self.assertEqual(values[0::3], values[2::3])

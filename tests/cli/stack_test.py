@@ -16,6 +16,7 @@ INSIDE = {
     "textures": {},
     "shapes": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "wall"}],
 }
+RECURSIVE = ("--engine", "recursive")
 FAR_TOO_DEEP = 16_000_000
 CHANCE = 200  # bounces: Linux starts every process's stack at an address of its own, within a few kilobytes
 
@@ -23,7 +24,7 @@ CHANCE = 200  # bounces: Linux starts every process's stack at an address of its
 class Recursion(CommandTest):
     def greatest_depth(self, *arguments, **keywords):
         """The depth that the refusal of a far greater one says would hold."""
-        result = self.run_command("render", "scene.json", "--spp", 1, "--depth", FAR_TOO_DEEP, *arguments, **keywords)
+        result = self.run_command("render", "scene.json", *RECURSIVE, "--spp", 1, "--depth", FAR_TOO_DEEP, *arguments, **keywords)
         self.assert_one_line(result, 2, "--depth", "ulimit -s", "OMP_STACKSIZE", "--engine iterative")
         return int(re.search(r"these threads hold depth (\d+)\.", result.stderr)[1])
 
@@ -31,10 +32,10 @@ class Recursion(CommandTest):
         greatest = self.greatest_depth(*arguments, **keywords)
         depth = greatest - CHANCE
         self.assertGreaterEqual(depth, least)
-        stats = self.stats("--spp", 1, "--depth", depth, *arguments, **keywords)
+        stats = self.stats(*RECURSIVE, "--spp", 1, "--depth", depth, *arguments, **keywords)
         self.assertEqual(stats["segments"], depth * stats["paths"])
         self.assertTrue(all(thread["segments"] > 0 for thread in stats["threads"]), "every stack was used")
-        self.assert_refused("render", "scene.json", "--spp", 1, "--depth", greatest + CHANCE, *arguments,
+        self.assert_refused("render", "scene.json", *RECURSIVE, "--spp", 1, "--depth", greatest + CHANCE, *arguments,
                             named="--depth", **keywords)
 
     def setUp(self):
@@ -68,14 +69,14 @@ class Recursion(CommandTest):
     def test_refuses_what_a_tiny_stack_cannot_hold(self):
         tiny = {"OMP_STACKSIZE": "64k"}
         for depth in (125, 100_000):
-            self.assert_refused("render", "scene.json", "--spp", 1, "--threads", 2, "--depth", depth, "-o", "out.png",
+            self.assert_refused("render", "scene.json", *RECURSIVE, "--spp", 1, "--threads", 2, "--depth", depth, "-o", "out.png",
                                 environment=tiny, named=["--depth", "OMP_STACKSIZE"])
         # One thread is the main one, whose stack is not OpenMP's; and depth 0 follows no ray.
-        self.run_well("render", "scene.json", "--spp", 1, "--threads", 1, "--depth", 125, environment=tiny)
-        self.run_well("render", "scene.json", "--spp", 1, "--threads", 2, "--depth", 0, environment=tiny)
+        self.run_well("render", "scene.json", *RECURSIVE, "--spp", 1, "--threads", 1, "--depth", 125, environment=tiny)
+        self.run_well("render", "scene.json", *RECURSIVE, "--spp", 1, "--threads", 2, "--depth", 0, environment=tiny)
 
     def test_says_what_would_hold_the_depth(self):
-        result = self.run_command("render", "scene.json", "--spp", 1, "--threads", 2, "--depth", 100_000)
+        result = self.run_command("render", "scene.json", *RECURSIVE, "--spp", 1, "--threads", 2, "--depth", 100_000)
         self.assert_one_line(result, 2)
         main_kilobytes = int(re.search(r"ulimit -s (\d+)", result.stderr)[1])
         worker_size = re.search(r"OMP_STACKSIZE=(\w+)", result.stderr)[1]
@@ -85,7 +86,7 @@ class Recursion(CommandTest):
             soft, hard = resource.getrlimit(resource.RLIMIT_STACK)
             resource.setrlimit(resource.RLIMIT_STACK, (max(soft, 1024 * main_kilobytes), hard))
 
-        stats = self.stats("--spp", 1, "--threads", 2, "--depth", 100_000, preexec_fn=raise_limit,
+        stats = self.stats(*RECURSIVE, "--spp", 1, "--threads", 2, "--depth", 100_000, preexec_fn=raise_limit,
                            environment={"OMP_STACKSIZE": worker_size})
         self.assertEqual(stats["segments"], 100_000 * stats["paths"])
 

@@ -49,6 +49,11 @@ TEST_P(AdaptiveImage, IsTheSameForEveryEngineThreadCountAndPool) {
     EXPECT_EQ(adapt(recursive::IterativeEngine(), scene, settings, error), expected);
     for (const int threads : {1, 2, 7}) {
         settings.threads = threads;
+        settings.schedule = {};
+        ASSERT_EQ(adapt(recursive::RecursiveEngine(), scene, settings, error), expected);
+        ASSERT_EQ(adapt(WavefrontEngine({}), scene, settings, error), expected);
+        settings.schedule = {LoopSchedule::Kind::Tasks, 2};
+        ASSERT_EQ(adapt(WavefrontEngine({}), scene, settings, error), expected);
         settings.schedule = {LoopSchedule::Kind::Dynamic, 1};
         for (const Grain& grain : {Grain{Grain::Kind::Line}, Grain{Grain::Kind::Pixel}, Grain{Grain::Kind::Tile, 5}}) {
             settings.grain = grain;

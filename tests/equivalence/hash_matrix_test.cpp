@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/settings_text.h"
 #include "tests/equivalence/same_image.h"
 
 namespace raypool {
@@ -28,10 +29,8 @@ struct MatrixCase {
 };
 
 std::string describe(const Engine& engine, const RenderSettings& settings) {
-    constexpr const char* kKinds[] = {"static", "dynamic", "guided"};
     constexpr const char* kGrains[] = {"pixel", "line", "tile"};
-    return fmt::format("{}, {} threads, {},{}, {}:{}", engine.name(), settings.threads,
-                       kKinds[static_cast<int>(settings.schedule.kind)], settings.schedule.chunk,
+    return fmt::format("{}, {} threads, {}, {}:{}", engine.name(), settings.threads, to_string(settings.schedule),
                        kGrains[static_cast<int>(settings.grain.kind)], settings.grain.tile);
 }
 
@@ -41,10 +40,12 @@ void for_every_loop(RenderSettings settings, const std::function<bool(const Rend
     const std::vector<Grain> grains{
         {Grain::Kind::Pixel, 1}, {Grain::Kind::Line, 1}, {Grain::Kind::Tile, 8}, {Grain::Kind::Tile, 16}};
     for (const int threads : {1, 2, 3, 7}) {
-        for (const Kind kind : {Kind::Static, Kind::Dynamic, Kind::Guided}) {
+        settings.threads = threads;
+        settings.schedule = {Kind::Balanced, 0};
+        if (!visit(settings)) return;
+        for (const Kind kind : {Kind::Static, Kind::Dynamic, Kind::Guided, Kind::Tasks}) {
             for (const int chunk : {0, 1, 3}) {
                 for (const Grain& grain : grains) {
-                    settings.threads = threads;
                     settings.schedule = {kind, chunk};
                     settings.grain = grain;
                     if (!visit(settings)) return;
@@ -160,8 +161,8 @@ TEST_P(OneImage, CountsTheSameWorkInAnyLoopAndCountingChangesNoBit) {
     EXPECT_TRUE(same_image("counted_" + GetParam(), uncounted, counted, "counting"));
     EXPECT_GE(counted.report.total(&ThreadWork::primitive_tests), counted.report.segments());
     for (const Engine* engine : kEngines) {
-        for (const LoopSchedule schedule :
-             {LoopSchedule{LoopSchedule::Kind::Static, 1}, LoopSchedule{LoopSchedule::Kind::Dynamic, 0}}) {
+        for (const LoopSchedule schedule : {LoopSchedule{LoopSchedule::Kind::Static, 1},
+                                            LoopSchedule{LoopSchedule::Kind::Tasks, 0}, LoopSchedule{}}) {
             for (const int threads : {1, 3}) {
                 settings.schedule = schedule;
                 settings.threads = threads;

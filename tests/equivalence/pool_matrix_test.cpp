@@ -51,7 +51,9 @@ std::vector<Knobs> matrix(const RenderSettings& base, std::int64_t whole) {
         for (const LoopSchedule schedule : {LoopSchedule{LoopSchedule::Kind::Static, 0},
                                             {LoopSchedule::Kind::Static, 1},
                                             {LoopSchedule::Kind::Dynamic, 0},
-                                            {LoopSchedule::Kind::Guided, 2}})
+                                            {LoopSchedule::Kind::Guided, 2},
+                                            {LoopSchedule::Kind::Tasks, 3},
+                                            {LoopSchedule::Kind::Balanced, 0}})
             for (const std::int64_t rays :
                  {std::int64_t{1}, std::int64_t{15}, std::int64_t{17}, std::int64_t{1000}, std::int64_t{8192}, whole})
                 for (const Refill refill : {Refill::Drain, Refill::Regenerate})

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "core/balanced_items.h"
 #include "core/error.h"
 #include "tests/small_render.h"
 #include "tests/trace_spans.h"
@@ -60,19 +61,38 @@ TEST(ItemTrace, HasASpanForEachItemAndAllPixelsInThem) {
     }
 }
 
+TEST(ItemTrace, HasASpanForEachBalancedItem) {
+    for (const auto& [width, spp] : {std::pair{23, 3}, {1, 500}}) {
+        const CompiledScene<float> scene = compile<float>(small_scene("paper", width, 5));
+        Trace trace;
+        RenderSettings settings;
+        settings.end_sample = spp;
+        settings.threads = 3;
+        const std::string expected = render(kIterative, scene, settings).hash();
+        settings.trace = &trace;
+        const Rendered got = render(kRecursive, scene, settings);
+        EXPECT_EQ(got.hash(), expected);
+        test::expect_agreement(trace, got.report);
+        std::int64_t spans = 0;
+        for (const Trace::Lane& lane : trace.lanes()) spans += std::ssize(test::named(lane, "item"));
+        EXPECT_EQ(spans, BalancedItems(scene.pixel_count(), spp, 3).count());
+    }
+}
+
 TEST(PixelCosts, AddUpToTheReportOfTheRenderWhateverTheLoop) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 23, 13));
     for (const int split_depth : {0, 2}) {
         for (const Cost cost : {Cost::Segments, Cost::Tests}) {
             std::vector<std::int64_t> first;
             for (const Engine* engine : kEngines) {
-                for (const Grain& grain : kGrains) {
+                for (const LoopSchedule& schedule : {LoopSchedule{}, {LoopSchedule::Kind::Tasks, 0}, kSchedules[1]}) {
                     for (const int threads : {1, 3}) {
                         CostImage image(cost, scene.width, scene.height);
                         RenderSettings settings;
                         settings.end_sample = 2;
                         settings.split_depth = split_depth;
-                        settings.grain = grain;
+                        settings.schedule = schedule;
+                        settings.grain = {Grain::Kind::Tile, 5};
                         settings.threads = threads;
                         const std::string expected = render(kIterative, scene, settings).hash();
                         settings.cost_image = &image;

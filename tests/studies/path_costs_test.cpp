@@ -45,13 +45,13 @@ TEST(PathCosts, OfTheItemsOfAnyGrainAreAllThereIs) {
 TEST(PathCosts, InTheOrderOfTilesAreThoseOfTheSamePixels) {
     const PathCosts costs = record_costs(*study_scene("paper", 37), three_samples());
     const Grain grain{Grain::Kind::Tile, 8};
-    const ItemOrder order = in_order(costs, grain, kTests);
+    const ItemOrder order = in_order(costs, grain, kTests, 100);
     const std::vector<Tally> items = costs.items(grain);
-    ASSERT_EQ(order.first_path.size(), items.size() + 1);
-    EXPECT_EQ(order.first_path.back() + 1, order.first.size());
+    ASSERT_EQ(order.items.first_path.size(), items.size() + 1);
+    EXPECT_EQ(order.items.first_path.back() + 1, order.first.size());
     for (std::size_t i = 0; i < items.size(); ++i) {
-        const auto begin = order.cost.begin() + order.first[order.first_path[i]];
-        const auto end = order.cost.begin() + order.first[order.first_path[i + 1]];
+        const auto begin = order.cost.begin() + order.first[order.items.first_path[i]];
+        const auto end = order.cost.begin() + order.first[order.items.first_path[i + 1]];
         EXPECT_EQ(std::accumulate(begin, end, 0.0), static_cast<double>(items[i].tests()));
     }
 }

@@ -204,6 +204,10 @@ TEST(ReplayRounds, PayABarrierForEachAndNeverBeatTheirBound) {
     EXPECT_NEAR(replay_rounds(rounds, {Kind::Dynamic, 1}, 1).makespan, paths.total(), 1e-6);
 }
 
+PoolItems items_of(const std::vector<std::uint32_t>& first_path, std::size_t most_held) {
+    return {first_path, std::vector<std::size_t>(first_path.size() - 1, most_held)};
+}
+
 TEST(ReplayThreadPools, KeepAllWorkAndItsBounds) {
     const Paths paths(1000);
     std::vector<std::uint32_t> items;
@@ -211,7 +215,8 @@ TEST(ReplayThreadPools, KeepAllWorkAndItsBounds) {
     for (const ReplaySchedule& schedule : {ReplaySchedule{Kind::Static, 1}, ReplaySchedule{Kind::Dynamic, 1}}) {
         for (const std::size_t capacity : {1UL, 50UL, 5000UL}) {
             for (const int threads : kThreads) {
-                const Replayed result = replay_thread_pools(paths.segments(), items, capacity, schedule, threads);
+                const Replayed result =
+                    replay_thread_pools(paths.segments(), items_of(items, capacity), schedule, threads);
                 EXPECT_NEAR(result.total(), paths.total(), 1e-6);
                 EXPECT_GE(result.makespan, paths.total() / threads * (1 - 1e-12));
             }
@@ -228,7 +233,7 @@ TEST(ReplayThreadPools, ShareStaticItemsAsALoopDoes) {
         costs.push_back(std::accumulate(paths.cost.begin() + paths.first[items[i]],
                                         paths.cost.begin() + paths.first[items[i + 1]], 0.0));
     const Replayed loop = replay(costs, {Kind::Static, 1}, 8);
-    const Replayed pools = replay_thread_pools(paths.segments(), items, 64, {Kind::Static, 1}, 8);
+    const Replayed pools = replay_thread_pools(paths.segments(), items_of(items, 64), {Kind::Static, 1}, 8);
     EXPECT_EQ(loop.owner, pools.owner);
     for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(loop.work[i], pools.work[i], 1e-6);
 }
@@ -238,9 +243,38 @@ TEST(ReplayThreadPools, OfMoreRoomThanThereIsWorkCannotBalanceWhatTheyHold) {
     const std::vector<std::uint32_t> first{0, 2, 3, 4, 5};
     const std::vector<float> cost{1, 100, 1, 1, 1};
     const std::vector<std::uint32_t> items{0, 1, 2, 3, 4};
-    const Replayed result = replay_thread_pools({first, cost}, items, 1000, {Kind::Dynamic, 1}, 2);
+    const Replayed result = replay_thread_pools({first, cost}, items_of(items, 1000), {Kind::Dynamic, 1}, 2);
     EXPECT_EQ(result.owner, (std::vector<std::int32_t>{0, 1, 0, 1}));
     EXPECT_EQ(result.makespan, 102);
+    // A thread that may hold one path only leaves the later ones to the other.
+    const PoolItems one_held = items_of(items, 1);
+    EXPECT_EQ(replay_thread_pools({first, cost}, one_held, {Kind::Dynamic, 1}, 2).makespan, 102);
+    const double speeds[] = {0.5, 1};
+    EXPECT_EQ(replay_thread_pools({first, cost}, one_held, {Kind::Dynamic, 1}, 2, {}, speeds).makespan, 204);
+}
+
+TEST(ReplaySharedPool, KeepsAllWorkAndPaysABarrierForEachRound) {
+    const Paths paths(1000);
+    for (const std::size_t capacity : {1UL, 50UL, 200UL, 5000UL}) {
+        for (const std::size_t batch : {1UL, 8UL, 5000UL}) {
+            for (const int threads : kThreads) {
+                const Replayed result = replay_shared_pool(paths.segments(), capacity, batch, threads);
+                EXPECT_NEAR(result.total(), paths.total(), 1e-6);
+                EXPECT_GE(result.makespan, paths.total() / threads * (1 - 1e-12));
+                EXPECT_GT(replay_shared_pool(paths.segments(), capacity, batch, threads, {.barrier = 1}).makespan,
+                          result.makespan + 1);
+            }
+        }
+    }
+}
+
+TEST(ReplaySharedPool, FinishesItsBatchesOnceThereAreNoCameraPathsLeft) {
+    // Two batches of one path each; the first round takes both paths by a segment, the second one finishes them.
+    const std::vector<std::uint32_t> first{0, 3, 5};
+    const std::vector<float> cost{1, 10, 20, 2, 5};
+    EXPECT_EQ(replay_shared_pool({first, cost}, 2, 1, 2).makespan, 2 + 30);
+    EXPECT_EQ(replay_shared_pool({first, cost}, 2, 1, 1).makespan, 38);
+    EXPECT_EQ(replay_shared_pool({first, cost}, 2, 1, 1, {.barrier = 3}).makespan, 38 + 2 * 3);
 }
 
 }  // namespace

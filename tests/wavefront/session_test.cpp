@@ -69,6 +69,7 @@ TEST(Session, AddsUpToOneRenderWhateverItsUnitsAndHoweverOftenItIsMerged) {
                         fmt::format("{}, grain {}, {} threads", named.name, static_cast<int>(grain.kind), threads));
                     RenderSettings settings = session_settings(1, threads);  // samples are the units' business
                     settings.grain = grain;
+                    if (grain.kind != Grain::Kind::Line) settings.schedule = {LoopSchedule::Kind::Dynamic, 1};
                     Framebuffer framebuffer = empty_framebuffer(scene, kSpp, moments);
                     const auto session = named.engine->begin(scene, settings, framebuffer);
                     session->add({0, 2, nullptr});

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <utility>
+
+#include "bench/studies/replay_clocks.h"
+#include "bench/studies/replay_model.h"
+
+namespace raypool::studies {
+
+namespace {
+
+constexpr std::size_t kCameraChunk = 64;  // camera paths at a time, as the engine (wavefront/rounds.h)
+
+/// The pool of a thread, or a batch of a shared pool.
+class PathPool {
+  public:
+    explicit PathPool(const SegmentCosts& segments) : segments_(segments) {}
+
+    [[nodiscard]] std::size_t size() const { return live_.size(); }
+
+    /// Brings in paths [begin, end), and makes room for them, `most` in all, by rounds. Returns the work that was done.
+    double add(std::uint32_t begin, std::uint32_t end, std::size_t most) {
+        double work = 0;
+        while (begin < end) {
+            const std::size_t wanted = std::min({kCameraChunk, most, static_cast<std::size_t>(end - begin)});
+            if (live_.size() + wanted > most) {
+                work += round();
+                continue;
+            }
+            for (const std::uint32_t last = begin + static_cast<std::uint32_t>(wanted); begin < last; ++begin) {
+                const Live path{segments_.first[begin], segments_.first[begin + 1]};
+                work += segments_.cost[path.next];
+                if (path.next + 1 < path.end) live_.push_back({path.next + 1, path.end});
+            }
+        }
+        return work;
+    }
+    /// Takes every path by one segment.
+    double round() {
+        double work = 0;
+        std::size_t alive = 0;
+        for (const Live& path : live_) {
+            work += segments_.cost[path.next];
+            if (path.next + 1 < path.end) live_[alive++] = {path.next + 1, path.end};
+        }
+        live_.resize(alive);
+        return work;
+    }
+    double drain() {
+        double work = 0;
+        while (!live_.empty()) work += round();
+        return work;
+    }
+
+  private:
+    struct Live {
+        std::uint32_t next;
+        std::uint32_t end;
+    };
+
+    SegmentCosts segments_;
+    std::vector<Live> live_;
+};
+
+}  // namespace
+
+Replayed replay_thread_pools(const SegmentCosts& segments, const PoolItems& items, const ReplaySchedule& schedule,
+                             int threads, const ReplayCosts& costs, std::span<const double> speeds) {
+    const std::size_t item_count = items.most_held.size();
+    std::vector<double> item_costs(item_count);
+    for (std::size_t i = 0; i < item_count; ++i)
+        for (std::uint32_t s = segments.first[items.first_path[i]]; s < segments.first[items.first_path[i + 1]]; ++s)
+            item_costs[i] += segments.cost[s];
+    const std::vector<std::int32_t> order = order_of(item_costs, schedule);
+
+    Dispenser dispenser(static_cast<std::int64_t>(item_count), schedule, threads);
+    std::vector<PathPool> pools(static_cast<std::size_t>(threads), PathPool(segments));
+    Replayed result{std::vector<double>(pools.size()), std::vector<std::int32_t>(item_count), 0};
+    for (Clocks clocks(threads, 0); !clocks.is_empty();) {
+        const auto [start, rank, thread] = clocks.take();
+        PathPool& pool = pools[static_cast<std::size_t>(thread)];
+        const Chunk chunk = dispenser.next(thread);
+        const bool is_last = chunk.begin == chunk.end;
+        double work = is_last ? pool.drain() : 0;
+        for (std::int64_t i = chunk.begin; i < chunk.end; ++i) {
+            const auto item = static_cast<std::size_t>(order[static_cast<std::size_t>(i)]);
+            work += pool.add(items.first_path[item], items.first_path[item + 1], items.most_held[item]);
+            result.owner[item] = thread;
+        }
+        result.work[static_cast<std::size_t>(thread)] += work;
+        const double speed = speeds.empty() ? 1 : speeds[static_cast<std::size_t>(thread)];
+        const double end = start + work / speed + (dispenser.is_fetching() && !is_last ? costs.fetch : 0);
+        result.makespan = std::max(result.makespan, end);
+        if (!is_last) clocks.put(end, rank, thread);
+    }
+    return result;
+}
+
+Replayed replay_shared_pool(const SegmentCosts& segments, std::size_t capacity, std::size_t batch, int threads,
+                            const ReplayCosts& costs) {
+    const std::size_t batch_count = (capacity + batch - 1) / batch;
+    std::vector<PathPool> batches(batch_count, PathPool(segments));
+    Replayed result{std::vector<double>(static_cast<std::size_t>(threads)), {}, 0};
+    const auto path_count = static_cast<std::uint32_t>(segments.path_count());
+    std::uint32_t next_path = 0;
+    for (int first = 0;; first = (first + 1) % threads) {
+        const bool is_last = next_path == path_count;  // batches are then finished, each by one thread
+        std::size_t next_batch = 0;
+        std::vector<std::size_t> batch_of(static_cast<std::size_t>(threads), batch_count);  // that a thread fills up
+        double end = 0;
+        for (Clocks clocks(threads, first); !clocks.is_empty();) {
+            const auto [start, rank, thread] = clocks.take();
+            std::size_t& b = batch_of[static_cast<std::size_t>(thread)];
+            const std::size_t size = b == batch_count ? batch : batches[b].size();
+            double work = 0;
+            if (size < batch && next_path < path_count) {
+                const auto taken =
+                    std::min({batch - size, kCameraChunk, static_cast<std::size_t>(path_count - next_path)});
+                const std::uint32_t begin = std::exchange(next_path, next_path + static_cast<std::uint32_t>(taken));
+                work = batches[b].add(begin, next_path, batch);
+            } else if (next_batch < batch_count) {
+                b = next_batch++;
+                work = is_last ? batches[b].drain() : batches[b].round();
+            } else {
+                continue;
+            }
+            result.work[static_cast<std::size_t>(thread)] += work;
+            const double now = start + work + costs.fetch;
+            end = std::max(end, now);
+            clocks.put(now, rank, thread);
+        }
+        result.makespan += end + costs.barrier;
+        if (is_last) return result;
+    }
+}
+
+}  // namespace raypool::studies
