@@ -54,11 +54,10 @@ struct alignas(64) Bounds {
 
 /// The boxes of a range by the place of their centres along each axis. What no bit of `used` stands for is not set.
 struct Bins {
-    std::uint32_t used[3];
+    std::uint32_t used[3] = {};
     std::uint32_t filled[3][kBins];
     Bounds box[3][kBins];
 
-    void clear() { std::fill_n(used, 3, 0U); }
     void add(int axis, int bin, const Bounds& bounds, std::uint32_t count) {
         const std::uint32_t bit = 1U << static_cast<unsigned>(bin);
         if ((used[axis] & bit) != 0) {

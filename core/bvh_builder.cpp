@@ -134,7 +134,6 @@ class Builder {
     }
 
     void fill(const Range& range, const Grid& grid, std::uint32_t first, std::uint32_t end, Bins& bins) const {
-        bins.clear();
         const Bounds* boxes = buffers_[range.buffer].get();
         for (std::uint32_t i = first; i < end; ++i)
             for (int axis = 0; axis < 3; ++axis)
@@ -194,11 +193,9 @@ class Builder {
         using Counts = std::array<std::uint32_t, kBins>;
         std::vector<std::array<Counts, 3>> below(chunks);  // boxes of a chunk in bins below a bin, by axis
         Bins all;
-        all.clear();
 #pragma omp parallel num_threads(threads_) if (threads_ > 1)
         {
             Bins mine;
-            mine.clear();
 #pragma omp for schedule(static) nowait
             for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
                 Bins bins;

@@ -14,17 +14,19 @@ def name_of(way):
     return way if isinstance(way, str) else f"{way:.0f} records"
 
 
-def panels(rows):
+def panels(rows, label):
     """A panel for each kind, in a row for each depth; of the most threads."""
-    rows = where(timed(rows), threads=max(distinct(rows, "threads")))
+    threads = max(distinct(rows, "threads"))
+    rows = where(timed(rows), threads=threads)
     kinds, depths = distinct(rows, "kind"), distinct(rows, "depth")
     figure, axes = plt.subplots(len(depths), len(kinds), figsize=(4.2 * len(kinds) + 1.8, 3.9 * len(depths) + 0.8),
                                 sharex=True, sharey="row", squeeze=False)
     for across, depth in zip(axes, depths):
         for axis, kind in zip(across, kinds):
             axis.set_xscale("log")
-            axis.set_title(f"{kind}, depth {depth:.0f}, {rows[0]['threads']:.0f} thread(s)")
+            axis.set_title(f"{kind}, depth {depth:.0f}, {threads:.0f} thread{'s' if threads > 1 else ''}")
             yield figure, axis, where(rows, depth=depth, kind=kind)
+        across[0].set_ylabel(label)
         across[-1].legend(loc="upper left", bbox_to_anchor=(1, 1))
     for axis in axes[-1]:
         axis.set_xlabel("shapes")
@@ -37,7 +39,7 @@ def ratios(here, way, shapes):
 
 
 def ratio(run, rows):
-    for figure, axis, here in panels(rows):
+    for figure, axis, here in panels(rows, "times as fast as recursion"):
         sizes = distinct(here, "shapes")
         ways = [way for way in distinct(here, "way") if way not in ("recursion", "automatic")]
         for index, way in enumerate(ways):
@@ -45,19 +47,17 @@ def ratio(run, rows):
         line(axis, sizes, [ratios(here, "automatic", size) for size in sizes], color=BLACK, marker="*", label="automatic")
         axis.axhline(1, color="black", linewidth=2, label="recursion")
         axis.set_ylim(bottom=0)
-        axis.set_ylabel("times as fast as recursion")
     return figure
 
 
 def time(run, rows):
-    for figure, axis, here in panels(rows):
+    for figure, axis, here in panels(rows, "nanoseconds of a thread for a ray"):
         sizes = distinct(here, "shapes")
         for way, label, style in (("recursion", "recursion", {"color": RED, "marker": "s", "linestyle": "--"}),
                                   ("automatic", "pool", {"color": BLUE, "marker": "o"})):
             line(axis, sizes, [spread(where(here, way=way, shapes=size), "ns_per_segment") for size in sizes], label=label,
                  **style)
         axis.set_yscale("log")
-        axis.set_ylabel("nanoseconds of a thread for a ray")
     return figure
 
 
