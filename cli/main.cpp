@@ -59,7 +59,8 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
             raypool::cluster::agree(ranks, {{"command", "help"}});
             if (ranks.is_first()) app.exit(error);  // --help, --version
         }
-        if (std::fflush(stdout) != 0) return fail(1, "cannot write to the standard output");
+        // What was written before the last flush may have failed, too: help is longer than a buffer.
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return fail(1, "cannot write to the standard output");
         return status;
     } catch (const raypool::InputError& error) {
         return fail(2, error.what());

@@ -36,9 +36,14 @@ class RoundLog {
 
     /// From now on a batch of a shared pool is worked on.
     void start_batch(std::int64_t batch) {
+        ahead_ = 0;
         if (lane_ == nullptr) return;
         end_span();
         batch_ = batch;
+    }
+    /// The batch goes on, ahead of the others: what follows is of the next round, until the batch or the round ends.
+    void go_ahead() {
+        if (round_ + ahead_ + 1 < kMostRounds) ++ahead_;
     }
     /// Starts the clock of a stage.
     void start() {
@@ -74,6 +79,7 @@ class RoundLog {
         if (lane_ != nullptr) lane_->occupancy(omp_get_wtime(), static_cast<std::int64_t>(records), pool);
     }
     void end_round() {
+        ahead_ = 0;
         if (!is_on_) return;
         if (round_ + 1 < kMostRounds) ++round_;
         if (lane_ == nullptr) return;
@@ -128,13 +134,15 @@ class RoundLog {
     }
 
     RoundWork& round() {
-        if (round_ >= rounds_.size()) rounds_.resize(round_ + 1);
-        return rounds_[round_];
+        const std::size_t i = round_ + ahead_;
+        if (i >= rounds_.size()) rounds_.resize(i + 1);
+        return rounds_[i];
     }
 
     bool is_on_;
     double mark_s_ = 0;
     std::size_t round_ = 0;
+    std::size_t ahead_ = 0;
     std::vector<RoundWork> rounds_;
 
     Trace* trace_;

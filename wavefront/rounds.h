@@ -250,6 +250,7 @@ class SharedPoolSession : public PoolSession<ScalarOf<Real>> {
         for (std::size_t count = pool.count(b); count > 0;) {
             count = stages.advance(pool.records(), first, count);
             count += stages.take_overflow(pool.records(), first + count);
+            stages.log().go_ahead();
         }
         stages.pass_on(pool, b, first, 0);
     }

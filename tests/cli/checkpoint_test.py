@@ -228,7 +228,8 @@ class CheckpointTest(CommandTest):
         for lost in ("--checkpoint", "-o", "--stats", "--trace"):
             files = {"--checkpoint": "c.sums", "-o": "a.pfm", "--stats": "s.json", "--trace": "t.json"}
             result = self.run_command(*SMALL, *(text for option, file in files.items() for text in (
-                option, f"disk/{file}" if option == lost else file)), "--every", 1000)
+                option, f"disk/{file}" if option == lost else file)), "--every", 1000, "--engine", "recursive", "--grain",
+                                      "line")
             if lost == "--stats":  # a small file
                 self.assertEqual(result.returncode, 0)
                 files[lost] = "disk/s.json"
@@ -371,7 +372,7 @@ class CheckpointTest(CommandTest):
 
     def test_trace_of_a_render_in_pieces_has_all_of_them(self):
         for options, passes in (((*RENDER, "--checkpoint", "c.sums"), 3), (render(**{"target-error": 0.02}), 2)):
-            self.run_well(*options, "--trace", "t.json")
+            self.run_well(*options, "--engine", "recursive", "--grain", "line", "--trace", "t.json")
             events = json.loads((self.folder / "t.json").read_text())["traceEvents"]
             lines = collections.Counter(event["args"]["y"] for event in events if event.get("name") == "line")
             self.assertGreaterEqual(max(lines.values()), passes)  # of an adaptive render: a line that got more samples

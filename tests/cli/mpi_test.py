@@ -160,7 +160,7 @@ class MpiTest(CommandTest):
             (("render", "absent.json"), 2, "absent.json"),
             (("render", "paper", "--spp", 0), 2, "--spp"),
             (("render", "paper", "--trace", "t.json"), 2, "--trace"),
-            (("render", "paper", "--depth", 1000000), 2, "--depth"),
+            (("render", "paper", "--engine", "recursive", "--depth", 1000000), 2, "--depth"),
             (("render", "paper", "--spp", 1, "-o", "absent/a.png"), 2, "absent/a.png"),
             (("render", "scene.json", "--spp", 1, "--checkpoint", "/dev/full"), 2, "/dev/full"),
             (("merge", "a.sums"), 2, "render"),
@@ -253,7 +253,7 @@ class MpiTest(CommandTest):
     def test_error_of_one_rank_names_it_and_ends_all(self):
         script = 'if [ "$OMPI_COMM_WORLD_RANK" = 1 ]; then ulimit -s 256; fi; exec "$@"'
         command = ["mpirun", "-n", "2", "sh", "-c", script, "sh", self.command, "render", "paper", "--spp", "100",
-                   "--depth", "5000", "--threads", "1"]
+                   "--engine", "recursive", "--depth", "5000", "--threads", "1"]
         result = subprocess.run(command, cwd=self.folder, env={**os.environ, **SETTINGS}, capture_output=True,
                                 text=True, timeout=60, check=False)
         self.assertEqual(result.returncode, 2, result.stderr)
