@@ -268,20 +268,20 @@ class Finder {
         for (std::uint32_t i = 0; i < members.size(); ++i) {
             const std::uint32_t quad = members[i];
             quads.for_each_near(quads.box(i), out_.flats[quad].point, out_.flats[quad].normal, [&](std::uint32_t k) {
-                if (members[k] < quad && covers(scene_.quads[members[k]], scene_.quads[quad]))
-                    out_.is_hidden[id(quad)] = true;
+                if (members[k] < quad && covers(members[k], quad)) out_.is_hidden[id(quad)] = true;
             });
         }
     }
 
-    /// Whether the corners of `under` are on `cover`, whose plane it lies in.
-    [[nodiscard]] static bool covers(const Quad& cover, const Quad& under) {
-        const FlatShape flat = flat_shape(cover);
+    /// Whether the corners of a quad are on another one, in whose plane it lies.
+    [[nodiscard]] bool covers(std::uint32_t cover, std::uint32_t under) const {
+        const FlatShape flat = flat_shape(scene_.quads[cover]);
         bool is_covered = true;
-        for_each_corner(under, [&](const Vector3d& x) {
+        for_each_corner(scene_.quads[under], [&](const Vector3d& x) {
             for (const Vector3d& dual : {flat.dual_u, flat.dual_v}) {
                 const double at = dual.dot(x - flat.corner);
-                is_covered = is_covered && at >= -kEdgeSlack<Scalar> && at <= 1 + kEdgeSlack<Scalar>;
+                const double slack = kEdgeSlack<Scalar> + dual.norm() * (described_[cover] + described_[under]);
+                is_covered = is_covered && at >= -slack && at <= 1 + slack;
             }
         });
         return is_covered;
