@@ -40,7 +40,7 @@ struct GroupedWay {
 };
 
 ReplayWay default_pool_way() {
-    return thread_pool_way(kDefaultPool, "pixel", "balanced", wavefront::PoolSettings{}.capacity);
+    return thread_pool_way(kDefaultPool, "pixel", "balanced", wavefront::PoolSettings::kThreadCapacity);
 }
 
 std::vector<GroupedWay> all_ways() {
