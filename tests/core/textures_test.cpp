@@ -83,6 +83,13 @@ TEST(Checker, CountsTheSumOfThreeCells) {
     }
 }
 
+template <class Scalar>
+Vec3<double> colour_of(const CompiledScene<Scalar>& scene, const SurfacePoint<Scalar>& point, int primitive_id,
+                       const Scalar* row) {
+    const SurfaceCode<Int<Scalar>> code{to_int<Scalar>(row[SurfaceRow<Scalar>::kCode])};
+    return surface_colour<kEverything, Scalar>(scene, point, primitive_id, row, code, true).template cast<double>();
+}
+
 /// The colour of the point where a ray meets the ground of `paper`, in Scalar; black where it does not.
 template <class Scalar>
 Vec3<double> ground_colour(const CompiledScene<Scalar>& scene, int ground_id, const Vec3<double>& origin,
@@ -93,7 +100,7 @@ Vec3<double> ground_colour(const CompiledScene<Scalar>& scene, int ground_id, co
     const Scalar t = sphere_distance<Scalar>(ray.origin, ray.direction, center, row[3], false);
     if (!(t < kInfinity<Scalar>)) return vec3<double>(0, 0, 0);
     const SurfacePoint<Scalar> point = surface_point<kEverything, Scalar>(ray, t, row);
-    return surface_colour<kEverything, Scalar>(scene, point, row, true).template cast<double>();
+    return colour_of(scene, point, ground_id, row);
 }
 
 /// Rounding may only decide beside a boundary: within `reach` of one.
@@ -226,7 +233,7 @@ Vec3<double> colour_seen(Scene scene, Texture::Wrap wrap, const Vec3<double>& or
     const auto* row = compiled.surfaces[0].value;
     const SurfacePoint<Scalar> point =
         surface_point<kEverything, Scalar>(ray, static_cast<Scalar>((target - origin).norm()), row);
-    return surface_colour<kEverything, Scalar>(compiled, point, row, true).template cast<double>();
+    return colour_of(compiled, point, 0, row);
 }
 
 using Wrap = Texture::Wrap;
