@@ -119,7 +119,7 @@ class Session : public RenderSession {
             PixelCost cost(settings_.cost_image);
             const bool has_squares = framebuffer_.has_squares();
 
-            const TraceLine trace_line = [&](const LinePixels& line, std::int64_t first, std::int64_t end) {
+            const auto trace = [&](const LinePixels& line, std::int64_t first, std::int64_t end) {
                 if (!log.is_started()) log.start(line[0] % scene_.width, line[0] / scene_.width);
                 const std::int64_t y = line[0] / scene_.width;
                 for (std::int64_t i = 0; i < line.count; ++i) {
@@ -144,6 +144,7 @@ class Session : public RenderSession {
                 }
                 log.add(line.count);
             };
+            const TraceLine trace_line = std::ref(trace);  // which takes no memory, so that nothing fails in here
             work.wait_s = loop.run(item_count, [&](std::int64_t item) {
                 visit(item, trace_line);
                 log.stop();

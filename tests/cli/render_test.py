@@ -176,7 +176,7 @@ class Render(CommandTest):
 
     def test_shows_progress_on_a_terminal_only(self):
         terminal, other_end = pty.openpty()
-        process = subprocess.Popen([self.command, "render", "paper", "--width", "200", "--spp", "60", "--threads", "1"],
+        process = subprocess.Popen([self.command, "render", "paper", "--width", "200", "--spp", "600", "--threads", "1"],
                                    cwd=self.folder, stdout=subprocess.DEVNULL, stderr=other_end,
                                    env={**os.environ, "TERM": "xterm"})
         os.close(other_end)
