@@ -85,7 +85,7 @@ class SpherePairs {
             const Uint32<Real> pair(pairs_ + first, stdx::element_aligned);
             const Uint32<Real> which = pair & Uint32<Real>(kShapes - 1);
             alignas(64) std::uint32_t offset[kRays];
-            (pair / Uint32<Real>(kShapes)).copy_to(offset, stdx::vector_aligned);
+            for (std::size_t i = 0; i < kRays; ++i) offset[i] = pairs_[first + i] / kShapes;
             Real row[Row::kColumns];
             load_rows_at<Row::kColumns, Real>(hits.rows->value, offset, row);
             const Vec3<Real> origin = columns(row, Row::kOrigin);

@@ -33,6 +33,8 @@ def capacity(run, rows):
         recursion = [row["mpaths_per_s"] for row in where(here, axis="recursion")]
         for engine, style in STYLES.items():
             groups = sorted(grouped(where(here, axis="capacity", engine=engine), "capacity").items())
+            if not groups:
+                continue
             spreads = []
             for _, runs in groups:
                 ratios = [row["mpaths_per_s"] / base for row, base in zip(runs, recursion)]
