@@ -55,7 +55,7 @@ class RayStream {
 
 namespace detail {
 
-/// Lists shorter than this are walked ray by ray. Measured: 8 to 16 are equal (docs/pool.md).
+/// Lists shorter than this are walked ray by ray. From a prototype on triangles, in which the length hardly mattered.
 inline constexpr std::size_t kShortList = 12;
 
 template <SceneNeeds needs, class Real, class Tree, class Work>
