@@ -117,7 +117,7 @@ class StreamWalk {
         }
 
         // Nearest child first, as the first ray of the list sees it.
-        const S* ray = hits_.rows->value + list[0];
+        const S* ray = hits_.rows[list[0] / Row::kColumns].value;
         int order[kWidth];
         S place[kWidth];
         for (int i = 0; i < kWidth; ++i) {
