@@ -46,6 +46,7 @@ def ratio(run, rows):
             line(axis, sizes, [ratios(here, way, size) for size in sizes], index=index, label=name_of(way), linestyle="--")
         line(axis, sizes, [ratios(here, "automatic", size) for size in sizes], color=BLACK, marker="*", label="automatic")
         axis.axhline(1, color="black", linewidth=2, label="recursion")
+    for axis in figure.axes:  # after the last panel, since rows share an axis that stops growing here
         axis.set_ylim(bottom=0)
     return figure
 
