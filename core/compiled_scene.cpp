@@ -109,7 +109,8 @@ class Compiler {
         const Material& material = scene_.materials[material_id];
         Row row{};
         const auto set_code = [&](int texture, int texture_row) {
-            row.value[Row::kCode] = Scalar(SurfaceCode<int>::make(static_cast<int>(material.kind), texture, texture_row));
+            row.value[Row::kCode] =
+                of_bits<Scalar>(SurfaceCode<Int<Scalar>>::make(static_cast<int>(material.kind), texture, texture_row));
         };
         set_code(0, 0);
         if (material.kind == Material::Kind::Dielectric) {
@@ -147,7 +148,7 @@ class Compiler {
         SurfaceRow<Scalar> surface = surface_row(shape.material_id, kind);
         FlatRow<Scalar> flat{};
         const Coincidence::Flat& met = coincidence_.flats[out_.flats.size()];
-        surface.value[SurfaceRow<Scalar>::kRadius] = flat_mark(static_cast<Scalar>(met.group));
+        surface.value[SurfaceRow<Scalar>::kRadius] = FlatMark<Scalar>::make(static_cast<Int<Scalar>>(met.group));
         for (int i = 0; i < 3; ++i) {
             surface.value[SurfaceRow<Scalar>::kCenter + i] = static_cast<Scalar>(met.normal[i]);
             surface.value[SurfaceRow<Scalar>::kMotion + i] = static_cast<Scalar>(met.point[i]);
@@ -239,7 +240,7 @@ class Compiler {
                 block.low[i][lane] = static_cast<Scalar>(boxes[lane].low[i]);
                 block.high[i][lane] = static_cast<Scalar>(boxes[lane].high[i]);
             }
-            block.group[lane] = static_cast<std::int32_t>(flat_mark(surface.value[SurfaceRow<Scalar>::kRadius]));
+            block.group[lane] = static_cast<std::int32_t>(FlatMark<Scalar>::group(surface.value[SurfaceRow<Scalar>::kRadius], 0));
             block.id[lane] = static_cast<std::int32_t>(ids[lane]);
         }
         return block;

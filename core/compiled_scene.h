@@ -22,21 +22,32 @@ template <class Scalar>
 struct alignas(4 * sizeof(Scalar)) SurfaceRow {
     enum Column {
         kCenter = 0,     ///< of a sphere at time 0, three; or the unit normal of a quad or plane
-        kRadius = 3,     ///< of a sphere; of a quad or plane flat_mark() of the group that a ray which leaves it leaves
+        kRadius = 3,     ///< of a sphere; of a quad or plane the FlatMark of the group that a ray which leaves it leaves
         kMotion = 4,     ///< of the centre from time 0 to 1, three; or a point of the plane of a quad or plane
         kParameter = 7,  ///< fuzz of metal, index of refraction of glass
         kColour = 8,     ///< three: albedo or radiance; of a checker the even colour
-        kCode = 11,      ///< SurfaceCode
+        kCode = 11,      ///< the bits of a SurfaceCode
         kColumns = 12
     };
     Scalar value[kColumns];
 };
 
-/// A group's id as a number below 0, which no radius is; and back. Shapes in one plane are a group (coincidence.h).
+/// A group's id in the bits of a number of at most -2, which no radius is; and back. Shapes in one plane are a group
+/// (coincidence.h).
 template <class Real>
-RAYPOOL_INLINE Real flat_mark(const Real& group) {
-    return Real(-1) - group;
-}
+struct FlatMark {
+    static constexpr int kGroupBits = 29;  ///< fewer than a float's bits below those that make it such a number
+    static constexpr ScalarOf<Int<Real>> kSign = std::bit_cast<ScalarOf<Int<Real>>>(ScalarOf<Real>(-2));
+
+    RAYPOOL_INLINE static Real make(const Int<Real>& group) { return of_bits<Real>(group | Int<Real>(kSign)); }
+    /// Of a row whose kRadius is `radius`: the group of a quad or plane, and `sphere_id` of a sphere. Without a branch,
+    /// which a single ray would often take by surprise.
+    RAYPOOL_INLINE static Int<Real> group(const Real& radius, const Int<Real>& sphere_id) {
+        const Int<Real> bits = bits_of<Real>(radius);
+        const Int<Real> ones_if_flat = bits >> (8 * static_cast<int>(sizeof(ScalarOf<Real>)) - 1);
+        return (bits & ones_if_flat & Int<Real>((1 << kGroupBits) - 1)) | (sphere_id & ~ones_if_flat);
+    }
+};
 
 /// Material and texture in one whole number: Material::Kind, Texture::Kind (of an image its number plus
 /// ImageRepeat's), and the row of the texture.
@@ -44,7 +55,7 @@ template <class Integer>
 struct SurfaceCode {
     static constexpr int kMaterialBits = 3;
     static constexpr int kTextureBits = 3;
-    static constexpr std::size_t kMostTextures = std::size_t{1} << (24 - kMaterialBits - kTextureBits);  ///< in a float
+    static constexpr std::size_t kMostTextures = std::size_t{1} << (31 - kMaterialBits - kTextureBits);
 
     Integer code;
     [[nodiscard]] RAYPOOL_INLINE Integer material() const { return code & Integer((1 << kMaterialBits) - 1); }

@@ -290,6 +290,16 @@ RAYPOOL_INLINE Int<Real> to_int(const Real& a) {
         return static_cast<Int<Real>>(a);
     }
 }
+/// The integers whose bits are those of `a`, and back: for tables in which a column of integers stands among reals. Such
+/// a column may be moved, and nothing else: as a number it can be a NaN, or too small for the processor to keep.
+template <class Real>
+RAYPOOL_INLINE Int<Real> bits_of(const Real& a) {
+    return std::bit_cast<Int<Real>>(a);
+}
+template <class Real>
+RAYPOOL_INLINE Real of_bits(const Int<Real>& a) {
+    return std::bit_cast<Real>(a);
+}
 template <class Real>
 RAYPOOL_INLINE Real to_real(const Int<Real>& a) {
     if constexpr (Simd<Real>) {

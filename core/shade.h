@@ -43,14 +43,18 @@ RAYPOOL_INLINE SurfacePoint<Real> surface_point(const Ray<Real>& ray, const Real
     if constexpr (needs.motion) center = center_at<Real>(center, motion, ray.time);
 
     SurfacePoint<Real> point;
-    point.outward = unit<Real>(vec3<Real>(p[0] - center[0], p[1] - center[1], p[2] - center[2]));
-    point.position = select<Real>(radius < t, along<Real>(center, radius, point.outward), p);
-    if constexpr (needs.flat) {
-        const Mask<Real> is_flat = radius < Real(0);
-        point.outward = select<Real>(is_flat, stored, point.outward);
+    const Mask<Real> is_flat = needs.flat ? radius < Real(0) : Mask<Real>(false);
+    if (!all(is_flat)) {
+        point.outward = unit<Real>(vec3<Real>(p[0] - center[0], p[1] - center[1], p[2] - center[2]));
+        point.position = select<Real>(radius < t, along<Real>(center, radius, point.outward), p);
+    }
+    if (needs.flat && any(is_flat)) {
         // Not the height above the plane, negated: gcc 12 makes one instruction of that, with another sign of zero.
         const Real depth = dot<Real>(vec3<Real>(motion[0] - p[0], motion[1] - p[1], motion[2] - p[2]), stored);
-        point.position = select<Real>(is_flat, along<Real>(p, depth, stored), point.position);
+        const Vec3<Real> in_plane = along<Real>(p, depth, stored);
+        const bool is_alone = all(is_flat);
+        point.outward = is_alone ? stored : select<Real>(is_flat, stored, point.outward);
+        point.position = is_alone ? in_plane : select<Real>(is_flat, in_plane, point.position);
     }
     point.is_front = dot<Real>(ray.direction, point.outward) < Real(0);
     point.normal = select<Real>(point.is_front, point.outward, -point.outward);
@@ -198,7 +202,7 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
     using Row = SurfaceRow<S>;
     Real row[Row::kColumns];
     load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, primitive_id, row);
-    const SurfaceCode<Int<Real>> code{to_int<Real>(row[Row::kCode])};
+    const SurfaceCode<Int<Real>> code{bits_of<Real>(row[Row::kCode])};
     const Int<Real> material = code.material();
     const auto is_material = [&](Material::Kind kind) {
         return as_mask<Real>(material == Int<Real>(static_cast<int>(kind)));
@@ -210,10 +214,7 @@ RAYPOOL_INLINE Scattered<Real> scatter(const CompiledScene<ScalarOf<Real>>& scen
     Scattered<Real> out;
     out.origin = point.position;
     out.leaving_id = primitive_id;
-    if constexpr (needs.flat) {
-        const Real mark = row[Row::kRadius];
-        out.leaving_id = select(mark < Real(0), to_int<Real>(flat_mark(mark)), primitive_id);
-    }
+    if constexpr (needs.flat) out.leaving_id = FlatMark<Real>::group(row[Row::kRadius], primitive_id);
     out.is_emitter = needs.emissive ? is_material(Material::Kind::Emissive) : Mask<Real>(false);
     const Mask<Real> is_glass = needs.dielectric ? is_material(Material::Kind::Dielectric) : Mask<Real>(false);
     const Mask<Real> is_metal = needs.metal ? is_material(Material::Kind::Metal) : Mask<Real>(false);

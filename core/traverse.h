@@ -137,6 +137,7 @@ RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& r
     const Vec3<Real> point = load<Real>(block.point);
     const Vec3<Real> normal = load<Real>(block.normal);
     if constexpr (in_box == InBox::No) {
+        if (none(may_meet_plane<Real>(ray.origin, ray.direction, point, normal, Real(hit.t)))) return;
         const Real t = plane_distance<Real>(ray.origin, ray.direction, point, normal, leaving);
         keep_closest<Real>(t, block.id, mask_bits(t <= Real(hit.t) && t < Real(kInfinity<Real>)), hit);
     } else {

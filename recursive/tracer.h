@@ -75,15 +75,17 @@ class Tracer {
     [[nodiscard]] std::uintptr_t deepest_stack() const { return deepest_stack_; }
 
   private:
-    /// By recursion, as in the paper: a bounce is a call.
-    [[gnu::noinline]] void recurse(Path<Scalar> path) {
+    /// By recursion, as in the paper: a bounce is a call. What follows a segment is made in its own frame and handed on
+    /// by reference: a copy would be read before the stores of its parts have ended, which takes a few nanoseconds.
+    [[gnu::noinline]] void recurse(const Path<Scalar>& path) {
+        Path<Scalar> after;
         if constexpr (splitting == Splitting::Off) {
-            if (advance(path, nullptr) == Next::OnePath) return recurse(path);
+            if (advance(path, after, nullptr) == Next::OnePath) return recurse(after);
         } else {
             Path<Scalar> reflected;
-            const Next next = advance(path, &reflected);
+            const Next next = advance(path, after, &reflected);
             if (next == Next::TwoPaths) recurse(reflected);
-            if (next != Next::End) return recurse(path);
+            if (next != Next::End) return recurse(after);
         }
         deepest_stack_ = std::min(deepest_stack_, stack_pointer());
     }
@@ -91,12 +93,12 @@ class Tracer {
     /// The same with a loop in place of the call.
     void iterate(Path<Scalar> path) {
         if constexpr (splitting == Splitting::Off) {
-            while (advance(path, nullptr) != Next::End) {
+            while (advance(path, path, nullptr) != Next::End) {
             }
         } else {
             Path<Scalar> waiting[path_step::kMostSplits + 1];
             for (int count = 0;;) {
-                const Next next = advance(path, &waiting[count]);
+                const Next next = advance(path, path, &waiting[count]);
                 if (next == Next::TwoPaths) ++count;
                 if (next == Next::End && count == 0) return;
                 if (next == Next::End) path = waiting[--count];
@@ -104,8 +106,9 @@ class Tracer {
         }
     }
 
-    /// Traces one segment and turns the path around its end; `reflected` is set when there is a second path.
-    RAYPOOL_INLINE Next advance(Path<Scalar>& path, Path<Scalar>* reflected) {
+    /// Traces one segment and sets the path after it, which may take the place of `path`; `reflected` is set when there
+    /// is a second one.
+    RAYPOOL_INLINE Next advance(const Path<Scalar>& path, Path<Scalar>& after, Path<Scalar>* reflected) {
         if (path_step::bounce(path.step) == static_cast<std::uint32_t>(depth_)) return Next::End;
         ++segments_;
         work_.begin_segment();
@@ -117,20 +120,20 @@ class Tracer {
             scatter<needs, Scalar, splitting>(scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key,
                                               path.step, seed(), split_depth_, rules == Rules::Any && roulette_);
         if (out.is_emitter) return finish(out.throughput);
-        path.ray.origin = out.origin;
-        path.ray.direction = out.direction;
-        path.throughput = out.throughput;
-        path.leaving_id = static_cast<std::int32_t>(out.leaving_id);
-        ++path.step;
+        after.ray = {out.origin, out.direction, path.ray.time};
+        after.throughput = out.throughput;
+        after.key = path.key;
+        after.leaving_id = static_cast<std::int32_t>(out.leaving_id);
+        after.step = path.step + 1;
         if constexpr (splitting == Splitting::On) {
             if (out.is_split) {
-                *reflected = path;
+                *reflected = after;
                 reflected->ray.direction = out.reflected_direction;
                 reflected->throughput = out.reflected_throughput;
-                reflected->step = path_step::reflected_branch(path.step);
-                path.step = reflected->step + (1U << path_step::kBranchShift);
+                reflected->step = path_step::reflected_branch(after.step);
+                after.step = reflected->step + (1U << path_step::kBranchShift);
                 if (out.is_alive && out.is_reflected_alive) return Next::TwoPaths;
-                if (out.is_reflected_alive) path = *reflected;
+                if (out.is_reflected_alive) after = *reflected;
                 return out.is_alive || out.is_reflected_alive ? Next::OnePath : Next::End;
             }
         }

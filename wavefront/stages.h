@@ -130,7 +130,8 @@ class Stages {
             const std::int32_t id = stream_.primitive_id()[i];
             if (id < 0) return kKinds - 1;
             const auto& row = context_.scene.surfaces[static_cast<std::size_t>(id)];
-            return static_cast<std::size_t>(SurfaceCode<int>{static_cast<int>(row.value[SurfaceRow<Scalar>::kCode])}.material());
+            const Int<Scalar> code = bits_of<Scalar>(row.value[SurfaceRow<Scalar>::kCode]);
+            return static_cast<std::size_t>(SurfaceCode<Int<Scalar>>{code}.material());
         };
         std::size_t place[kKinds + 1] = {};
         for (std::size_t i = 0; i < count; ++i) ++place[kind(i) + 1];

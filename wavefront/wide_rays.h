@@ -92,6 +92,8 @@ RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const Wid
         is_closer = is_closer && is_inside_box<Real>(lane_of<Real>(block.low, lane), lane_of<Real>(block.high, lane),
                                                      ray.origin, rays.inverse, t);
     } else {
+        is_closer = may_meet_plane<Real>(ray.origin, ray.direction, point, normal, hit.t);
+        if (none(is_closer)) return is_closer;
         t = plane_distance<Real>(ray.origin, ray.direction, point, normal, is_leaving);
         is_closer = closer<Real>(t, id, hit);
     }

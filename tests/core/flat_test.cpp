@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/engine.h"
 #include "core/shapes.h"
 #include "tests/errors.h"
 #include "tests/random_inputs.h"
@@ -31,6 +32,50 @@ TEST(PlaneDistance, IsAccurateFromBothSides) {
     }
     EXPECT_GT(errors.count(), static_cast<std::size_t>(kInputs / 3));
     EXPECT_LT(errors.quantile(0.99), 2e-5);
+}
+
+/// Before the exact test, with limits that rounding decides: the hit's own distance and its neighbours.
+template <class Scalar>
+void expect_no_hit_lost_within_its_limit() {
+    RandomInputs random(6);
+    const FlushDenormals flush;
+    int hits = 0;
+    for (int i = 0; i < kInputs; ++i) {
+        const auto size = static_cast<Scalar>(std::abs(random.magnitude<double>(-20, 20)));
+        const Vec3<Scalar> origin = size * random.point<Scalar>(1);
+        const Vec3<Scalar> direction = random.direction<Scalar>();
+        const Vec3<Scalar> normal = random.direction<Scalar>();
+        Vec3<Scalar> point = random.one_in(2) ? size * random.point<Scalar>(1) : random.point<Scalar>(1);
+        if (random.one_in(4)) point = along<Scalar>(origin, std::numeric_limits<Scalar>::min(), normal);
+        const Scalar t = plane_distance<Scalar>(origin, direction, point, normal, false);
+        if (!(t < kInfinity<Scalar>)) continue;
+        ++hits;
+        for (const Scalar limit : {t, std::nextafter(t, kInfinity<Scalar>), 2 * t, kInfinity<Scalar>}) {
+            ASSERT_TRUE(may_meet_plane<Scalar>(origin, direction, point, normal, limit))
+                << "case " << i << ": at " << t << " from " << origin.transpose() << " to " << direction.transpose();
+        }
+    }
+    EXPECT_GT(hits, kInputs / 4);
+}
+
+TEST(PlaneReach, LosesNoHitInFloat) {
+    expect_no_hit_lost_within_its_limit<float>();
+}
+TEST(PlaneReach, LosesNoHitInDouble) {
+    expect_no_hit_lost_within_its_limit<double>();
+}
+
+TEST(PlaneReach, KeepsOutPlanesBehindTheRayAndBeyondTheLimit) {
+    const Vec3<float> origin = vec3<float>(0, 2, 0);
+    const Vec3<float> up = vec3<float>(0, 1, 0);
+    const Vec3<float> ground = vec3<float>(0, 0, 0);
+    const auto passes = [&](const Vec3<float>& direction, float limit) {
+        return may_meet_plane<float>(origin, direction, ground, up, limit);
+    };
+    EXPECT_TRUE(passes(-up, 2.001F));
+    EXPECT_FALSE(passes(-up, 1.999F));
+    EXPECT_FALSE(passes(up, kInfinity<float>)) << "behind";
+    EXPECT_FALSE(passes(vec3<float>(1, 0, 0), kInfinity<float>)) << "along the plane";
 }
 
 TEST(PlaneDistance, IsNoneForRaysThatRunAlongLeaveOrStartOnThePlane) {

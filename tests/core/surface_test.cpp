@@ -98,7 +98,7 @@ TEST(SurfacePoint, HasAUnitNormalAgainstTheRay) {
 }
 
 TEST(SurfacePoint, OfAFlatShapeIsThePointOnTheRayWithTheStoredNormal) {
-    SphereRow<float> row = sphere_row<float>(vec3<float>(0, 1, 0), flat_mark(0.0F));
+    SphereRow<float> row = sphere_row<float>(vec3<float>(0, 1, 0), FlatMark<float>::make(0));
     const Ray<float> down{vec3<float>(1, 5, 2), vec3<float>(0, -1, 0), 0};
     const SurfacePoint<float> above = surface_point<kEverything, float>(down, 5.0F, row.data());
     EXPECT_EQ(above.position, vec3<float>(1, 0, 2));

@@ -174,8 +174,8 @@ class Traversal : public testing::TestWithParam<TestScene> {
             leaving_id = kNoPrimitive;
             if (is_hit && i % 4 != 0) {
                 const auto* surface = compiled.surfaces[static_cast<std::size_t>(hit.primitive_id)].value;
-                const Scalar mark = surface[SurfaceRow<Scalar>::kRadius];
-                leaving_id = static_cast<std::int32_t>(mark < 0 ? flat_mark(mark) : static_cast<Scalar>(hit.primitive_id));
+                leaving_id = static_cast<std::int32_t>(
+                    FlatMark<Scalar>::group(surface[SurfaceRow<Scalar>::kRadius], hit.primitive_id));
             }
         }
         EXPECT_GT(hits, kRays / 10);
