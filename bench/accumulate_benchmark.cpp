@@ -14,6 +14,7 @@
 #include "bench/bench_support.h"
 #include "bench/frozen_rays.h"
 #include "wavefront/rounds.h"
+#include "wavefront/stages.h"
 
 namespace raypool {
 namespace {

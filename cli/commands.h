@@ -14,8 +14,9 @@ void add_render_command(CLI::App& app, cluster::Ranks& ranks, int& status);
 void add_compare_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app, int& status);
 void add_diff_command(CLI::App& app, int& status);
-void add_advise_command(CLI::App& app, int& status);
 void add_merge_command(CLI::App& app, int& status);
+// Where RAYPOOL_BUILD_BENCH is on.
+void add_advise_command(CLI::App& app, int& status);
 void add_study_command(CLI::App& app, int& status);
 
 }  // namespace raypool::cli

@@ -106,8 +106,10 @@ void check_memory(const Scene& scene, const RenderOptions& options, const cluste
 
 /// Of the code that a scene runs on, which may be compiled for more than it needs.
 std::size_t stored_record_bytes(const Scene& scene, Precision precision) {
-    const SceneNeeds& needs = kCompiledNeeds[compiled_needs_index(scene_needs(scene))];
-    return ray_record_bytes(needs, precision == Precision::Double ? sizeof(double) : sizeof(float));
+    const bool is_double = precision == Precision::Double;
+    const std::size_t first = is_double ? kFirstCompiledNeeds<double> : kFirstCompiledNeeds<float>;
+    const SceneNeeds& needs = kCompiledNeeds[compiled_needs_index(scene_needs(scene), first)];
+    return ray_record_bytes(needs, is_double ? sizeof(double) : sizeof(float));
 }
 
 ImageAttributes image_attributes(const RenderRecord& record) {

@@ -30,4 +30,8 @@ void check_settings(const RenderSettings& settings, const Framebuffer& framebuff
             "needs, is not known");
 }
 
+void refuse_double() {
+    throw InputError("--precision double: this build has none; configure it with -DRAYPOOL_BUILD_DOUBLE=ON");
+}
+
 }  // namespace raypool

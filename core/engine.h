@@ -182,6 +182,9 @@ class RenderSession {
 /// Renders the samples and pixels of `settings`, the only unit of its session.
 RenderReport render_whole(RenderSession& session, const RenderSettings& settings);
 
+/// Says that the build has no double precision (RAYPOOL_BUILD_DOUBLE): what engines do then in place of begin().
+[[noreturn]] void refuse_double();
+
 class Engine {
   public:
     Engine() = default;

@@ -73,13 +73,18 @@ inline constexpr std::array<SceneNeeds, 3> kCompiledNeeds{{
     kEverything,
 }};
 
-constexpr std::size_t compiled_needs_index(const SceneNeeds& needs) {
-    std::size_t i = 0;
+constexpr std::size_t compiled_needs_index(const SceneNeeds& needs, std::size_t first = 0) {
+    std::size_t i = first;
     while (!covers(kCompiledNeeds[i], needs)) ++i;
     return i;
 }
 
-/// Calls function.template operator()<compiled needs>() with the first compiled set that covers `needs`.
+/// The first of them in a precision. In double precision, where accuracy is what is asked for, nothing is compiled for
+/// the first set alone: its scenes run on the second.
+template <class Scalar>
+inline constexpr std::size_t kFirstCompiledNeeds = sizeof(Scalar) > sizeof(float) ? 1 : 0;
+
+/// Calls function.template operator()<compiled needs>() with the first compiled set, from the i-th on, that covers `needs`.
 template <std::size_t i = 0, class Function>
 auto dispatch_needs(const SceneNeeds& needs, Function&& function) {
     if constexpr (i + 1 < kCompiledNeeds.size()) {

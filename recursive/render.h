@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -67,16 +69,103 @@ void check_stack(std::int32_t depth, int threads) {
                     depth, wanted, per_bounce, held == 0 ? 0 : held - 1, wanted * 1024, wanted));
 }
 
+/// A tracer of one thread that adds lines of pixels to the framebuffer: what the loop over the image knows of it, so that
+/// the loop is compiled once for each precision, and the tracer for each set of features.
+class LineTracer {
+  public:
+    LineTracer() = default;
+    LineTracer(const LineTracer&) = delete;
+    LineTracer& operator=(const LineTracer&) = delete;
+    virtual ~LineTracer() = default;
+    /// Traces samples [first, end) of some pixels, which other threads may add to where `addition` says so.
+    virtual void trace(const LinePixels& line, std::int64_t first, std::int64_t end, Addition addition,
+                       ProgressBatch& progress) = 0;
+    virtual void report(ThreadWork& work, SampleAudit& audit) const = 0;
+};
+
 template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules>
+class alignas(64) CompiledLineTracer final : public LineTracer {
+  public:
+    CompiledLineTracer(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer)
+        : width_(scene.width),
+          framebuffer_(framebuffer),
+          tracer_(scene, settings, framebuffer.fixed_point()),
+          cost_(settings.cost_image) {}
+
+    void trace(const LinePixels& line, std::int64_t first, std::int64_t end, Addition addition,
+               ProgressBatch& progress) override {
+        const bool has_squares = framebuffer_.has_squares();
+        const std::int64_t y = line[0] / width_;
+        for (std::int64_t i = 0; i < line.count; ++i) {
+            const std::int64_t pixel = line[i];
+            const std::int64_t x = pixel - y * width_;
+            FixedRgb sum{};
+            FixedSquare square;
+            cost_.start(tracer_);
+            for (std::int64_t s = first; s < end; ++s) {
+                const FixedRgb& sample = tracer_.template sample<form>(x, y, s);
+                for (int k = 0; k < 3; ++k) sum[k] += sample[k];
+                if (has_squares) square.add(tracer_.square(sample));
+            }
+            cost_.stop(tracer_, pixel);
+            if (addition == Addition::Plain) {
+                add<Addition::Plain>(pixel, sum, square);
+            } else {
+                add<Addition::Atomic>(pixel, sum, square);
+            }
+            progress.add(end - first);
+        }
+    }
+    void report(ThreadWork& work, SampleAudit& audit) const override {
+        work.segments = tracer_.segments();
+        work.box_tests = tracer_.work().box_tests;
+        work.primitive_tests = tracer_.work().primitive_tests;
+        audit = tracer_.audit();
+    }
+
+  private:
+    template <Addition addition>
+    void add(std::int64_t pixel, const FixedRgb& sum, const FixedSquare& square) {
+        framebuffer_.template add<addition>(pixel, sum);
+        if (framebuffer_.has_squares()) framebuffer_.template add_square<addition>(pixel, square);
+    }
+
+    std::int64_t width_;
+    Framebuffer& framebuffer_;
+    Tracer<needs, Scalar, Work, splitting, rules> tracer_;
+    PixelCost cost_;
+};
+
+/// What the loop over the image asks of the code that was picked.
+template <class Scalar>
+struct TracerMaker {
+    std::unique_ptr<LineTracer> (*make)(const CompiledScene<Scalar>&, const RenderSettings&, Framebuffer&);
+    void (*check_stack)(std::int32_t depth, int threads);  ///< null where the stack does not grow with the depth
+};
+
+template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules>
+TracerMaker<Scalar> tracer_maker() {
+    TracerMaker<Scalar> maker{[](const CompiledScene<Scalar>& scene, const RenderSettings& settings,
+                                 Framebuffer& framebuffer) -> std::unique_ptr<LineTracer> {
+                                  return std::make_unique<CompiledLineTracer<form, needs, Scalar, Work, splitting, rules>>(
+                                      scene, settings, framebuffer);
+                              },
+                              nullptr};
+    if constexpr (form == Form::Recursive) maker.check_stack = &check_stack<needs, Scalar, Work, splitting, rules>;
+    return maker;
+}
+
+template <class Scalar>
 class Session : public RenderSession {
   public:
-    Session(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer)
-        : scene_(scene), settings_(settings), framebuffer_(framebuffer) {
+    Session(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer,
+            const TracerMaker<Scalar>& maker)
+        : scene_(scene), settings_(settings), framebuffer_(framebuffer), make_(maker.make) {
         const double start = omp_get_wtime();
         check_settings(settings, framebuffer);
         report_.threads.reserve(static_cast<std::size_t>(settings.threads));  // so that no report fails behind a render
-        if constexpr (form == Form::Recursive) {
-            check_stack<needs, Scalar, Work, splitting, rules>(settings.depth, settings.threads);
+        if (maker.check_stack != nullptr) {
+            maker.check_stack(settings.depth, settings.threads);
             report_.seconds = report_.setup_s = omp_get_wtime() - start;
         }
     }
@@ -108,40 +197,21 @@ class Session : public RenderSession {
     using VisitItem = std::function<void(std::int64_t item, const TraceLine&)>;
 
     /// Has each item visited by some thread, which adds to the framebuffer as `addition` says. What passed since
-    /// `start_s` was setup. Compiled once for all schedules: it holds the whole tracer.
+    /// `start_s` was setup.
     RenderReport loop_over(std::int64_t item_count, const VisitItem& visit, Addition addition, double start_s) {
+        std::vector<std::unique_ptr<LineTracer>> tracers(static_cast<std::size_t>(settings_.threads));
+        for (auto& tracer : tracers) tracer = make_(scene_, settings_, framebuffer_);
         const double setup_s = omp_get_wtime() - start_s;
         TeamLoop loop(settings_);
         RenderReport report = run_threads(settings_, [&](ThreadWork& work, SampleAudit& audit) {
-            Tracer<needs, Scalar, Work, splitting, rules> tracer(scene_, settings_, framebuffer_.fixed_point());
+            LineTracer& tracer = *tracers[static_cast<std::size_t>(omp_get_thread_num())];
             ProgressBatch progress(settings_.progress);
             ItemLog log(settings_, omp_get_thread_num());
-            PixelCost cost(settings_.cost_image);
-            const bool has_squares = framebuffer_.has_squares();
 
             const auto trace = [&](const LinePixels& line, std::int64_t first, std::int64_t end) {
                 if (!log.is_started()) log.start(line[0] % scene_.width, line[0] / scene_.width);
-                const std::int64_t y = line[0] / scene_.width;
-                for (std::int64_t i = 0; i < line.count; ++i) {
-                    const std::int64_t pixel = line[i];
-                    const std::int64_t x = pixel - y * scene_.width;
-                    FixedRgb sum{};
-                    FixedSquare square;
-                    cost.start(tracer);
-                    for (std::int64_t s = first; s < end; ++s) {
-                        const FixedRgb& sample = tracer.template sample<form>(x, y, s);
-                        for (int k = 0; k < 3; ++k) sum[k] += sample[k];
-                        if (has_squares) square.add(tracer.square(sample));
-                    }
-                    cost.stop(tracer, pixel);
-                    if (addition == Addition::Plain) {
-                        add<Addition::Plain>(pixel, sum, square);
-                    } else {
-                        add<Addition::Atomic>(pixel, sum, square);
-                    }
-                    work.paths += end - first;
-                    progress.add(end - first);
-                }
+                tracer.trace(line, first, end, addition, progress);
+                work.paths += line.count * (end - first);
                 log.add(line.count);
             };
             const TraceLine trace_line = std::ref(trace);  // which takes no memory, so that nothing fails in here
@@ -149,32 +219,25 @@ class Session : public RenderSession {
                 visit(item, trace_line);
                 log.stop();
             });
-            work.segments = tracer.segments();
-            work.box_tests = tracer.work().box_tests;
-            work.primitive_tests = tracer.work().primitive_tests;
-            audit = tracer.audit();
+            tracer.report(work, audit);
         });
         report.setup_s += setup_s;
         report.seconds += setup_s;
         return report;
     }
 
-    template <Addition addition>
-    void add(std::int64_t pixel, const FixedRgb& sum, const FixedSquare& square) {
-        framebuffer_.template add<addition>(pixel, sum);
-        if (framebuffer_.has_squares()) framebuffer_.template add_square<addition>(pixel, square);
-    }
-
     const CompiledScene<Scalar>& scene_;
     RenderSettings settings_;
     Framebuffer& framebuffer_;
+    decltype(TracerMaker<Scalar>::make) make_;
 };
 
 template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting = Splitting::Off,
           Rules rules = Rules::Any>
 std::unique_ptr<RenderSession> begin(const CompiledScene<Scalar>& scene, const RenderSettings& settings,
                                      Framebuffer& framebuffer) {
-    return std::make_unique<Session<form, needs, Scalar, Work, splitting, rules>>(scene, settings, framebuffer);
+    return std::make_unique<Session<Scalar>>(scene, settings, framebuffer,
+                                             tracer_maker<form, needs, Scalar, Work, splitting, rules>());
 }
 
 /// Picks the code compiled for what the scene needs. Counting and splitting are compiled once each, for all needs.
@@ -186,7 +249,7 @@ std::unique_ptr<RenderSession> begin(const CompiledScene<Scalar>& scene, const R
     const bool counts_for_image = settings.cost_image != nullptr && settings.cost_image->cost == Cost::Tests;
     if (settings.count_work || counts_for_image)
         return begin<form, kEverything, Scalar, WorkCount>(scene, settings, framebuffer);
-    return dispatch_needs(scene.needs, [&]<SceneNeeds needs>() {
+    return dispatch_needs<kFirstCompiledNeeds<Scalar>>(scene.needs, [&]<SceneNeeds needs>() {
         return are_plain(settings)
                    ? begin<form, needs, Scalar, NoWorkCount, Splitting::Off, Rules::Plain>(scene, settings, framebuffer)
                    : begin<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);

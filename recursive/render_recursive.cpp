@@ -8,9 +8,16 @@ std::unique_ptr<RenderSession> RecursiveEngine::begin(const CompiledScene<float>
                                                       Framebuffer& framebuffer) const {
     return recursive::begin<Form::Recursive>(scene, settings, framebuffer);
 }
+#ifdef RAYPOOL_NO_DOUBLE
+std::unique_ptr<RenderSession> RecursiveEngine::begin(const CompiledScene<double>&, const RenderSettings&,
+                                                      Framebuffer&) const {
+    refuse_double();
+}
+#else
 std::unique_ptr<RenderSession> RecursiveEngine::begin(const CompiledScene<double>& scene,
                                                       const RenderSettings& settings, Framebuffer& framebuffer) const {
     return recursive::begin<Form::Recursive>(scene, settings, framebuffer);
 }
+#endif
 
 }  // namespace raypool::recursive

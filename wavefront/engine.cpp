@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/memory.h"
-#include "wavefront/render_widths.h"
+#include "wavefront/render.h"
 
 namespace raypool::wavefront {
 
@@ -47,8 +47,8 @@ std::unique_ptr<RenderSession> begin_any(const CompiledScene<Scalar>& scene, con
         throw InputError("--accumulator: atomic-float and atomic-double keep no squares, which --target-error needs");
     if (settings.depth == 0) return std::make_unique<DarkSession<Scalar>>(scene, settings.progress);
     try {
-        return pool.width == StageWidth::Simd ? begin_simd(scene, settings, pool, framebuffer)
-                                              : begin_scalar(scene, settings, pool, framebuffer);
+        return pool.width == StageWidth::Simd ? begin<WideReal<Scalar>>(scene, settings, pool, framebuffer)
+                                              : begin<Scalar>(scene, settings, pool, framebuffer);
     } catch (const std::bad_alloc&) {
         throw InputError(
             fmt::format("--pool-rays, --threads, --accumulator: no memory for the pools, the stages and the "
@@ -63,9 +63,16 @@ std::unique_ptr<RenderSession> WavefrontEngine::begin(const CompiledScene<float>
                                                       Framebuffer& framebuffer) const {
     return begin_any(scene, settings, pool_, framebuffer);
 }
+#ifdef RAYPOOL_NO_DOUBLE
+std::unique_ptr<RenderSession> WavefrontEngine::begin(const CompiledScene<double>&, const RenderSettings&,
+                                                      Framebuffer&) const {
+    refuse_double();
+}
+#else
 std::unique_ptr<RenderSession> WavefrontEngine::begin(const CompiledScene<double>& scene,
                                                       const RenderSettings& settings, Framebuffer& framebuffer) const {
     return begin_any(scene, settings, pool_, framebuffer);
 }
+#endif
 
 }  // namespace raypool::wavefront

@@ -59,12 +59,19 @@ struct LaneOf<V> {
 /// Room after the last record, so that a whole register can be loaded and stored anywhere.
 inline constexpr std::size_t kPadding = 16;
 
+/// The needs that a record shows: scenes that agree in them have one kind of record.
+constexpr SceneNeeds record_needs(const SceneNeeds& needs) {
+    SceneNeeds shown;
+    shown.motion = needs.motion;
+    return shown;
+}
+
 /// Columns of `capacity` records. Not synchronised; threads may work on ranges that do not share records.
 template <SceneNeeds needs, class Scalar>
-class RayColumns {
+class ColumnsOfKind {
   public:
     /// 0 records take no memory.
-    explicit RayColumns(std::size_t capacity)
+    explicit ColumnsOfKind(std::size_t capacity)
         : stride_(capacity + kPadding), memory_(new (std::align_val_t(64)) std::byte[bytes(capacity)]) {
         std::memset(memory_.get(), 0, bytes(capacity));  // lanes beyond the last record hold ids that exist
     }
@@ -109,7 +116,7 @@ class RayColumns {
     }
 
     /// Copies `count` records to another place, which may be in another pool. Ranges do not overlap.
-    void copy_to(RayColumns& other, std::size_t target, std::size_t first, std::size_t count) const {
+    void copy_to(ColumnsOfKind& other, std::size_t target, std::size_t first, std::size_t count) const {
         RayRecord<Scalar> record;
         const std::byte* from = memory_.get();
         std::byte* to = other.memory_.get();
@@ -152,5 +159,9 @@ class RayColumns {
     std::size_t stride_;
     std::unique_ptr<std::byte[], Delete> memory_;
 };
+
+/// The columns for a scene: one type for each kind of record.
+template <SceneNeeds needs, class Scalar>
+using RayColumns = ColumnsOfKind<record_needs(needs), Scalar>;
 
 }  // namespace raypool::wavefront

@@ -1,28 +1,43 @@
-/// From settings to a session: what wavefront/engine.h declares, as a template, instantiated in render_*.cpp.
+/// From settings to a session: what wavefront/engine.h declares, as a template.
+///
+/// Sessions are compiled in sessions.cpp, once for each kind of record. Stages are compiled in stages_*.cpp, a file for
+/// each of the large ones: they take most of the time that the project takes to build.
 #pragma once
 
+#include "core/shade.h"
+#include "core/traverse.h"
 #include "wavefront/engine.h"
-#include "wavefront/rounds.h"
+#include "wavefront/record_stages.h"
 
 namespace raypool::wavefront {
+
+/// A register of rays, as stages take them.
+template <class Scalar>
+using WideReal = Wide<Scalar, stdx::native_simd<Scalar>::size()>;
+
+/// Makes Stages<needs, Real, Work, splitting>; who instantiates it includes compiled_stages.h.
+template <SceneNeeds needs, class Real, class Work, Splitting splitting>
+StagesMaker<record_needs(needs), ScalarOf<Real>> stages_maker();
+
+/// In float for both kinds of record, in double for that of moving shapes.
+template <SceneNeeds needs, class Scalar>
+std::unique_ptr<RenderSession> begin_session(const CompiledScene<Scalar>&, const RenderSettings&, const PoolSettings&,
+                                             Framebuffer&, const StagesMaker<needs, Scalar>&);
 
 template <SceneNeeds needs, class Real, class Work, Splitting splitting>
 std::unique_ptr<RenderSession> begin(const CompiledScene<ScalarOf<Real>>& scene, const RenderSettings& settings,
                                      const PoolSettings& pool, Framebuffer& framebuffer) {
-    if (pool.scope == PoolScope::PerThread)
-        return std::make_unique<ThreadPoolSession<needs, Real, Work, splitting>>(scene, settings, pool, framebuffer);
-    return std::make_unique<SharedPoolSession<needs, Real, Work, splitting>>(scene, settings, pool, framebuffer);
+    return begin_session<record_needs(needs), ScalarOf<Real>>(scene, settings, pool, framebuffer,
+                                                              stages_maker<needs, Real, Work, splitting>());
 }
 
-/// Picks the code compiled for what the scene needs. Counting and splitting are compiled once each, for all needs.
+/// Picks the code compiled for what the scene needs. One code counts and splits, for all needs.
 template <class Real>
 std::unique_ptr<RenderSession> begin(const CompiledScene<ScalarOf<Real>>& scene, const RenderSettings& settings,
                                      const PoolSettings& pool, Framebuffer& framebuffer) {
-    if (settings.split_depth > 0)
+    if (settings.split_depth > 0 || settings.count_work)
         return begin<kEverything, Real, WorkCount, Splitting::On>(scene, settings, pool, framebuffer);
-    if (settings.count_work)
-        return begin<kEverything, Real, WorkCount, Splitting::Off>(scene, settings, pool, framebuffer);
-    return dispatch_needs(scene.needs, [&]<SceneNeeds needs>() {
+    return dispatch_needs<kFirstCompiledNeeds<ScalarOf<Real>>>(scene.needs, [&]<SceneNeeds needs>() {
         return begin<needs, Real, NoWorkCount, Splitting::Off>(scene, settings, pool, framebuffer);
     });
 }

@@ -11,8 +11,8 @@
 #include "core/balanced_items.h"
 #include "core/team_loop.h"
 #include "wavefront/append.h"
+#include "wavefront/record_stages.h"
 #include "wavefront/session.h"
-#include "wavefront/stages.h"
 
 namespace raypool::wavefront {
 
@@ -25,21 +25,20 @@ inline std::size_t camera_capacity(std::size_t capacity, int split_depth) {
 }
 
 /// A pool of one thread. Camera paths are pushed into it; it does rounds whenever it is full.
-template <SceneNeeds needs, class Real, class Work, Splitting splitting>
+template <SceneNeeds needs, class Scalar>
 class ThreadPool {
   public:
-    using Scalar = ScalarOf<Real>;
-
-    ThreadPool(const RenderContext<Scalar>& context, std::size_t capacity, int thread)
+    ThreadPool(const RenderContext<Scalar>& context, const StagesMaker<needs, Scalar>& maker, std::size_t capacity,
+               int thread)
         : context_(context),
           camera_capacity_(camera_capacity(capacity, context.settings.split_depth)),
           records_(capacity),
-          stages_(context, capacity, thread) {}
+          stages_(maker.make(context, capacity, thread)) {}
 
     /// The memory of one of these.
-    static std::size_t bytes(const RenderContext<Scalar>& context, std::size_t capacity) {
-        return RayColumns<needs, Scalar>::bytes(capacity) +
-               Stages<needs, Real, Work, splitting>::bytes(context, capacity);
+    static std::size_t bytes(const RenderContext<Scalar>& context, const StagesMaker<needs, Scalar>& maker,
+                             std::size_t capacity) {
+        return RayColumns<needs, Scalar>::bytes(capacity) + maker.bytes(context, capacity);
     }
 
     /// Brings in paths, and makes room for them by rounds: the pool holds at most `most` records, if it can hold as
@@ -52,8 +51,8 @@ class ThreadPool {
                 do round();
                 while (context_.pool.refill == Refill::Drain && count_ > 0);
             } else {
-                count_ += stages_.generate(records_, count_, paths.take(static_cast<std::int64_t>(wanted)));
-                count_ += stages_.take_overflow(records_, count_);
+                count_ += stages_->generate(records_, count_, paths.take(static_cast<std::int64_t>(wanted)));
+                count_ += stages_->take_overflow(records_, count_);
                 progress.add(static_cast<std::int64_t>(wanted));
             }
         }
@@ -64,39 +63,40 @@ class ThreadPool {
         while (count_ > 0) round();
     }
 
-    Stages<needs, Real, Work, splitting>& stages() { return stages_; }
+    RecordStages<needs, Scalar>& stages() { return *stages_; }
 
   private:
     void round() {
-        count_ = stages_.advance(records_, 0, count_);
-        count_ += stages_.take_overflow(records_, count_);
-        stages_.log().occupancy(count_, Trace::Event::Kind::ThreadCounter);
-        stages_.log().end_round();
+        count_ = stages_->advance(records_, 0, count_);
+        count_ += stages_->take_overflow(records_, count_);
+        stages_->log().occupancy(count_, Trace::Event::Kind::ThreadCounter);
+        stages_->log().end_round();
     }
 
     const RenderContext<Scalar>& context_;
     std::size_t camera_capacity_;
     RayColumns<needs, Scalar> records_;
     std::size_t count_ = 0;
-    Stages<needs, Real, Work, splitting> stages_;
+    std::unique_ptr<RecordStages<needs, Scalar>> stages_;
 };
 
 /// The loop over the image of per-thread pools: work items are handed out as to the recursive engine.
-template <SceneNeeds needs, class Real, class Work, Splitting splitting>
-class ThreadPoolSession : public PoolSession<ScalarOf<Real>> {
-    using Base = PoolSession<ScalarOf<Real>>;
-    using Pool = ThreadPool<needs, Real, Work, splitting>;
+template <SceneNeeds needs, class Scalar>
+class ThreadPoolSession : public PoolSession<Scalar> {
+    using Base = PoolSession<Scalar>;
+    using Pool = ThreadPool<needs, Scalar>;
 
   public:
-    ThreadPoolSession(const CompiledScene<ScalarOf<Real>>& scene, const RenderSettings& settings,
-                      const PoolSettings& pool, Framebuffer& framebuffer)
-        : Base(scene, settings, pool, framebuffer, record_bytes<needs, ScalarOf<Real>>()) {
-        this->take_memory(static_cast<std::size_t>(settings.threads) * Pool::bytes(this->context(), this->capacity()),
-                          this->capacity());
+    ThreadPoolSession(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const PoolSettings& pool,
+                      Framebuffer& framebuffer, const StagesMaker<needs, Scalar>& maker)
+        : Base(scene, settings, pool, framebuffer, record_bytes<needs, Scalar>()) {
+        this->take_memory(
+            static_cast<std::size_t>(settings.threads) * Pool::bytes(this->context(), maker, this->capacity()),
+            this->capacity());
         pools_.resize(static_cast<std::size_t>(settings.threads));
         this->finish_setup([&](int thread) {
             pools_[static_cast<std::size_t>(thread)] =
-                std::make_unique<Pool>(this->context(), this->capacity(), thread);
+                std::make_unique<Pool>(this->context(), maker, this->capacity(), thread);
         });
     }
 
@@ -162,29 +162,27 @@ class ThreadPoolSession : public PoolSession<ScalarOf<Real>> {
 /// The paper's pool: one for all threads, and a barrier after every round. Where camera paths enter as soon as there is
 /// room, the last of them leave a pool that only thins out: batches whose records stay in them are then finished, each
 /// by one thread, in place of dozens of rounds with nothing in them but barriers.
-template <SceneNeeds needs, class Real, class Work, Splitting splitting>
-class SharedPoolSession : public PoolSession<ScalarOf<Real>> {
-    using Scalar = ScalarOf<Real>;
+template <SceneNeeds needs, class Scalar>
+class SharedPoolSession : public PoolSession<Scalar> {
     using Base = PoolSession<Scalar>;
-    using ThreadStages = Stages<needs, Real, Work, splitting>;
+    using ThreadStages = RecordStages<needs, Scalar>;
 
   public:
     SharedPoolSession(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const PoolSettings& pool,
-                      Framebuffer& framebuffer)
+                      Framebuffer& framebuffer, const StagesMaker<needs, Scalar>& maker)
         : Base(scene, settings, pool, framebuffer, record_bytes<needs, Scalar>()) {
         const std::size_t batch = std::clamp<std::size_t>(static_cast<std::size_t>(pool.batch),
                                                           std::size_t{1} << settings.split_depth, this->capacity());
         const PoolShape shape(this->capacity(), batch, settings.split_depth);
         const auto threads = static_cast<std::size_t>(settings.threads);
         this->take_memory(shared_pool_bytes<needs, Scalar>(pool.append, shape, settings.threads) +
-                              threads * ThreadStages::bytes(this->context(), shape.stride),
+                              threads * maker.bytes(this->context(), shape.stride),
                           shape.stride);
         pool_ = make_shared_pool<needs, Scalar>(pool.append, this->capacity(), batch, settings.split_depth,
                                                 settings.threads);
         stages_.resize(threads);
         this->finish_setup([&](int thread) {
-            stages_[static_cast<std::size_t>(thread)] =
-                std::make_unique<ThreadStages>(this->context(), pool_->batch(), thread);
+            stages_[static_cast<std::size_t>(thread)] = maker.make(this->context(), pool_->batch(), thread);
         });
     }
 

@@ -18,7 +18,8 @@
 #include "core/memory.h"
 #include "wavefront/accumulator.h"
 #include "wavefront/capacity.h"
-#include "wavefront/stages.h"
+#include "wavefront/record_stages.h"
+#include "wavefront/stream.h"
 
 namespace raypool::wavefront {
 

@@ -12,54 +12,45 @@
 #include "core/loop.h"
 #include "core/shade.h"
 #include "wavefront/accumulator.h"
-#include "wavefront/camera_paths.h"
 #include "wavefront/beam.h"
-#include "wavefront/ray_record.h"
-#include "wavefront/round_log.h"
+#include "wavefront/record_stages.h"
 #include "wavefront/stream.h"
 
 namespace raypool::wavefront {
 
-/// What all threads of a render share.
-template <class Scalar>
-struct RenderContext {
-    const CompiledScene<Scalar>& scene;
-    const RenderSettings& settings;
-    const PoolSettings& pool;
-    RandomSeed seed;
-    FixedPoint fixed;
-    AccumulatorBase<Scalar>* accumulator;
-};
-
 template <SceneNeeds needs, class Real, class Work, Splitting splitting>
-class Stages {
+class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
+    using Base = RecordStages<record_needs(needs), ScalarOf<Real>>;
+    using Base::log_;
+    using Base::overflow_;
+    using Base::overflow_count_;
+    using Base::waited_s_;
+
   public:
     using Scalar = ScalarOf<Real>;
-    using Records = RayColumns<needs, Scalar>;
+    using typename Base::Records;
     static constexpr int kRays = kLanes<Real>;
 
     /// For batches of at most `most_records`.
     Stages(const RenderContext<Scalar>& context, std::size_t most_records, int thread)
-        : context_(context),
+        : Base(context, most_overflow(context, most_records), thread),
+          context_(context),
           thread_(thread),
           stream_(most_records, tree_depth(context)),
-          overflow_(splitting == Splitting::On ? most_records : 0),
           sort_scratch_(context.pool.sort == Sort::None ? 0 : most_records),
-          converter_(context.fixed),
-          log_(context.settings, thread) {
+          converter_(context.fixed) {
         deposits_.reserve(std::max(most_records, kMostDeposits) + kBeamRays + kRays);
     }
 
     /// The memory of one of these.
     static std::size_t bytes(const RenderContext<Scalar>& context, std::size_t most_records) {
         return RayStream<Scalar>::bytes(most_records, tree_depth(context)) +
-               Records::bytes(splitting == Splitting::On ? most_records : 0) +
+               Records::bytes(most_overflow(context, most_records)) +
                (context.pool.sort == Sort::None ? 0 : most_records * sizeof(double)) +
                Deposits<Scalar>::bytes(std::max(most_records, kMostDeposits) + kBeamRays + kRays);
     }
 
-    /// A unit of the render begins: what report() says is of this unit.
-    void begin() {
+    void begin() override {
         log_.begin();
         converter_ = SampleConverter(context_.fixed);
         work_ = {};
@@ -67,10 +58,7 @@ class Stages {
         waited_s_ = 0;
     }
 
-    /// Brings `paths` into the pool from record `first` on, where there is room for all of them. Returns how many
-    /// records that made: one each, or, with the fused camera stage, one for each that survives its first bounce.
-    /// Records that splitting added wait in the overflow, here and in advance().
-    std::size_t generate(Records& records, std::size_t first, CameraPaths paths) {
+    std::size_t generate(Records& records, std::size_t first, CameraPaths paths) override {
         log_.start();
         const auto count = static_cast<std::size_t>(paths.left());
         paths_ += paths.left();
@@ -90,8 +78,7 @@ class Stages {
         return written;
     }
 
-    /// Takes records [first, first + count) through one bounce. Returns how many survive, now at the front.
-    std::size_t advance(Records& records, std::size_t first, std::size_t count) {
+    std::size_t advance(Records& records, std::size_t first, std::size_t count) override {
         log_.start();
         intersect(records, first, count);
         segments_ += static_cast<std::int64_t>(count);
@@ -164,53 +151,7 @@ class Stages {
     RayStream<Scalar>& stream() { return stream_; }
     [[nodiscard]] std::size_t deposit_count() const { return deposits_.count(); }
 
-    [[nodiscard]] std::size_t overflow_count() const { return overflow_count_; }
-    /// Moves the overflow to record `target`. Returns how many records that were.
-    std::size_t take_overflow(Records& records, std::size_t target) {
-        if constexpr (splitting == Splitting::On) {
-            log_.start();
-            overflow_.copy_to(records, target, 0, overflow_count_);
-            log_.stop(Stage::Append, overflow_count_);
-        }
-        return std::exchange(overflow_count_, 0);
-    }
-
-    /// Hands records [first, first + count) of batch b and the overflow to a shared pool. Returns where in the batch's
-    /// range the next records may be put.
-    template <class Pool>
-    std::size_t pass_on(Pool& pool, std::int64_t b, std::size_t first, std::size_t count) {
-        log_.start();
-        const std::size_t split = std::exchange(overflow_count_, 0);
-        const std::size_t end = pool.keep(b, first, count, overflow_, split);
-        log_.stop(Stage::Append, count + split);
-        return end;
-    }
-    /// This thread's part in what a shared pool does between two rounds.
-    template <class Pool>
-    void end_round(Pool& pool) {
-        log_.start();
-        pool.end_round([this] {
-            log_.stop(Stage::Append, 0);
-            wait();
-            log_.start();
-        });
-        log_.stop(Stage::Append, 0);
-    }
-
-    /// Waits for the other threads.
-    void wait() {
-        const double begin = omp_get_wtime();
-#pragma omp barrier
-        const double end = omp_get_wtime();
-        waited_s_ += end - begin;
-        log_.waited(begin, end);
-    }
-
-    RoundLog& log() {
-        return log_;
-    }
-
-    void report(ThreadWork& work, SampleAudit& audit) const {
+    void report(ThreadWork& work, SampleAudit& audit) const override {
         work.paths = paths_;
         work.segments = segments_;
         work.box_tests = work_.box_tests;
@@ -222,6 +163,9 @@ class Stages {
   private:
     static constexpr std::size_t kMostDeposits = 1024;  ///< kept back in the fused camera stage; fits into the L1 cache
 
+    static std::size_t most_overflow(const RenderContext<Scalar>& context, std::size_t most_records) {
+        return context.settings.split_depth > 0 ? most_records : 0;
+    }
     static int tree_depth(const RenderContext<Scalar>& context) {
         return std::max(context.scene.sphere_tree.depth, context.scene.quad_tree.depth);
     }
@@ -426,15 +370,11 @@ class Stages {
     int thread_;
     RayStream<Scalar> stream_;
     Deposits<Scalar> deposits_;
-    Records overflow_;
-    std::size_t overflow_count_ = 0;
     std::vector<double> sort_scratch_;
     SampleConverter converter_;
-    RoundLog log_;
     Work work_;
     std::int64_t paths_ = 0;
     std::int64_t segments_ = 0;
-    double waited_s_ = 0;
 };
 
 }  // namespace raypool::wavefront

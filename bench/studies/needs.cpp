@@ -44,9 +44,14 @@ class FeatureEngine : public Engine {
     BeginFunction function_;
 };
 
+}  // namespace
+
 BeginFunction pool_begin(std::size_t set) {
-    return set < kFrontSets ? pool_begin_front(set) : pool_begin_back(set);
+    if (set < kFileSets) return pool_begin_front(set);
+    return set < 2 * kFileSets ? pool_begin_middle(set) : pool_begin_back(set);
 }
+
+namespace {
 
 /// The scene as it is, and for the code that can do everything. It is one image.
 struct Twins {

@@ -39,11 +39,15 @@ inline constexpr auto kFeatureSets = [] {
 using BeginFunction = std::unique_ptr<RenderSession> (*)(const CompiledScene<float>&, const RenderSettings&,
                                                          Framebuffer&);
 
-/// By kFeatureSets. The pool's are in two files, which compile slowly.
+/// By kFeatureSets.
 BeginFunction iterative_begin(std::size_t set);
-BeginFunction pool_begin_front(std::size_t set);  ///< of the first half of the sets
-BeginFunction pool_begin_back(std::size_t set);   ///< of the second half; `set` counts on from the first
-inline constexpr std::size_t kFrontSets = kFeatureSets.size() / 2;
+BeginFunction pool_begin(std::size_t set);
+
+/// The pool's are in three files, which compile slowly: those from set 0, kFileSets and 2 * kFileSets on.
+inline constexpr std::size_t kFileSets = 4;
+BeginFunction pool_begin_front(std::size_t set);
+BeginFunction pool_begin_middle(std::size_t set);
+BeginFunction pool_begin_back(std::size_t set);
 
 /// The function of each set from `first` on, `count` of them, by Pick<needs>::begin.
 template <template <SceneNeeds> class Pick, std::size_t first, std::size_t count>

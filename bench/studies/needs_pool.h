@@ -1,8 +1,8 @@
-/// The fused pool, compiled for a set of features: what needs_pool_front.cpp and needs_pool_back.cpp instantiate.
+/// The fused pool, compiled for a set of features: what needs_pool_*.cpp instantiate.
 #pragma once
 
 #include "bench/studies/needs_engines.h"
-#include "wavefront/render.h"
+#include "wavefront/compiled_stages.h"
 
 namespace raypool::studies {
 
@@ -10,7 +10,7 @@ template <SceneNeeds needs>
 struct FusedPool {
     static std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene, const RenderSettings& settings,
                                                 Framebuffer& framebuffer) {
-        using Real = Wide<float, stdx::native_simd<float>::size()>;
+        using Real = wavefront::WideReal<float>;
         return wavefront::begin<needs, Real, NoWorkCount, Splitting::Off>(scene, settings, wavefront::PoolSettings{},
                                                                           framebuffer);
     }

@@ -3,7 +3,7 @@
 namespace raypool::studies {
 
 BeginFunction pool_begin_back(std::size_t set) {
-    return begin_of_set<FusedPool, kFrontSets, kFeatureSets.size() - kFrontSets>(set);
+    return begin_of_set<FusedPool, 2 * kFileSets, kFeatureSets.size() - 2 * kFileSets>(set);
 }
 
 }  // namespace raypool::studies

@@ -3,7 +3,7 @@
 namespace raypool::studies {
 
 BeginFunction pool_begin_front(std::size_t set) {
-    return begin_of_set<FusedPool, 0, kFrontSets>(set);
+    return begin_of_set<FusedPool, 0, kFileSets>(set);
 }
 
 }  // namespace raypool::studies

@@ -43,8 +43,7 @@ TEST(FeatureSets, MakeOneImageOfAPlainScene) {
     settings.end_sample = 2;
     const std::string expected = render(recursive::RecursiveEngine(), scene, settings).hash();
     for (std::size_t i = 0; i < kFeatureSets.size(); ++i) {
-        for (const BeginFunction begin :
-             {iterative_begin(i), i < kFrontSets ? pool_begin_front(i) : pool_begin_back(i)}) {
+        for (const BeginFunction begin : {iterative_begin(i), pool_begin(i)}) {
             const Rendered got = rendered_by(scene, settings, [&](Framebuffer& framebuffer) {
                 return render_whole(*begin(scene, settings, framebuffer), settings);
             });
@@ -75,8 +74,7 @@ TEST(FeatureSets, CanDoWhatTheirFeatureIs) {
         const std::string expected = render(recursive::RecursiveEngine(), compiled, settings).hash();
         for (std::size_t i = 0; i < kFeatureSets.size(); ++i) {
             if (kFeatureSets[i].name != names[0]) continue;
-            for (const BeginFunction begin :
-                 {iterative_begin(i), i < kFrontSets ? pool_begin_front(i) : pool_begin_back(i)}) {
+            for (const BeginFunction begin : {iterative_begin(i), pool_begin(i)}) {
                 const Rendered got = rendered_by(compiled, settings, [&](Framebuffer& framebuffer) {
                     return render_whole(*begin(compiled, settings, framebuffer), settings);
                 });

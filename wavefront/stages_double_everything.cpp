@@ -1,0 +1,8 @@
+#include "wavefront/compiled_stages.h"
+
+namespace raypool::wavefront {
+
+template StagesMaker<record_needs(kEverything), double>
+stages_maker<kEverything, WideReal<double>, NoWorkCount, Splitting::Off>();
+
+}  // namespace raypool::wavefront

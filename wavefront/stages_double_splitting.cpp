@@ -1,0 +1,8 @@
+#include "wavefront/compiled_stages.h"
+
+namespace raypool::wavefront {
+
+template StagesMaker<record_needs(kEverything), double>
+stages_maker<kEverything, WideReal<double>, WorkCount, Splitting::On>();
+
+}  // namespace raypool::wavefront
