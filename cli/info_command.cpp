@@ -70,7 +70,11 @@ void info(const std::string& name) {
           scene.quads.size(), scene.planes.size(), scene.materials.size(), scene.textures.size());
     print_hidden(scene, coincidence.is_hidden);
     print("needs: {}\n", listed(compiled.needs));
-    print("runs on code compiled for: {}\n", listed(kCompiledNeeds[compiled_needs_index(compiled.needs)]));
+    const auto code = [&](std::size_t first) {
+        return listed(kCompiledNeeds[compiled_needs_index(compiled.needs, first)]);
+    };
+    print("runs on code compiled for: {}; in double: {}\n", code(kFirstCompiledNeeds<float>),
+          code(kFirstCompiledNeeds<double>));
     const CodeWidths widths = code_widths();
     print("which may use: {}; stages of {} rays in float, {} in double; trees {} and {} wide\n",
           fmt::format("{}", fmt::join(widths.instruction_sets, ", ")), widths.float_lanes, widths.double_lanes,

@@ -66,7 +66,8 @@ std::vector<std::string> feature_names(const SceneNeeds& needs);
 
 inline constexpr SceneNeeds kEverything{true, true, true, true, true, true, true, true, true};
 
-/// The sets of features that the engines are compiled for, smallest first. A scene runs on the first that covers it.
+/// The sets of features that the engines are compiled for, smallest first. A scene runs on the first that covers it,
+/// counted from kFirstCompiledNeeds on.
 inline constexpr std::array<SceneNeeds, 3> kCompiledNeeds{{
     {},
     {.motion = true, .defocus = true, .metal = true, .fuzz = true, .dielectric = true, .checker = true},

@@ -291,7 +291,8 @@ RAYPOOL_INLINE Int<Real> to_int(const Real& a) {
     }
 }
 /// The integers whose bits are those of `a`, and back: for tables in which a column of integers stands among reals. Such
-/// a column may be moved, and nothing else: as a number it can be a NaN, or too small for the processor to keep.
+/// a column may be moved, and nothing else, unless its values say otherwise (FlatMark): as a number it can be a NaN, or
+/// too small for the processor to keep.
 template <class Real>
 RAYPOOL_INLINE Int<Real> bits_of(const Real& a) {
     return std::bit_cast<Int<Real>>(a);

@@ -1,6 +1,6 @@
 /// The loop over the image, for any form of the tracer: what recursive/engine.h declares, as a template.
 ///
-/// Instantiated once per form and precision in render_*.cpp; included by nothing else but tests.
+/// Tracers are compiled for each form, precision and set of features; the loop for each precision.
 #pragma once
 
 #include <omp.h>

@@ -15,7 +15,7 @@ namespace raypool::wavefront {
 template <class Scalar>
 using WideReal = Wide<Scalar, stdx::native_simd<Scalar>::size()>;
 
-/// Makes Stages<needs, Real, Work, splitting>; who instantiates it includes compiled_stages.h.
+/// Makes Stages<needs, Real, Work, splitting>. A file that instantiates it includes compiled_stages.h.
 template <SceneNeeds needs, class Real, class Work, Splitting splitting>
 StagesMaker<record_needs(needs), ScalarOf<Real>> stages_maker();
 
