@@ -40,12 +40,17 @@ struct FlatMark {
     static constexpr ScalarOf<Int<Real>> kSign = std::bit_cast<ScalarOf<Int<Real>>>(ScalarOf<Real>(-2));
 
     RAYPOOL_INLINE static Real make(const Int<Real>& group) { return of_bits<Real>(group | Int<Real>(kSign)); }
-    /// Of a row whose kRadius is `radius`: the group of a quad or plane, and `sphere_id` of a sphere. Without a branch,
-    /// which a single ray would often take by surprise.
+    /// Of a row whose kRadius is `radius`: the group of a quad or plane, and `sphere_id` of a sphere. A single ray gets it
+    /// without a branch, which it would often take by surprise. (clang 14 cannot shift registers of 64-bit integers by 63.)
     RAYPOOL_INLINE static Int<Real> group(const Real& radius, const Int<Real>& sphere_id) {
         const Int<Real> bits = bits_of<Real>(radius);
-        const Int<Real> ones_if_flat = bits >> (8 * static_cast<int>(sizeof(ScalarOf<Real>)) - 1);
-        return (bits & ones_if_flat & Int<Real>((1 << kGroupBits) - 1)) | (sphere_id & ~ones_if_flat);
+        const Int<Real> group = bits & Int<Real>((1 << kGroupBits) - 1);
+        if constexpr (Simd<Real>) {
+            return select(radius < Real(0), group, sphere_id);
+        } else {
+            const Int<Real> ones_if_flat = bits >> (8 * static_cast<int>(sizeof(Real)) - 1);
+            return (group & ones_if_flat) | (sphere_id & ~ones_if_flat);
+        }
     }
 };
 
