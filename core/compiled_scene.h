@@ -36,7 +36,7 @@ struct alignas(4 * sizeof(Scalar)) SurfaceRow {
 /// (coincidence.h).
 template <class Real>
 struct FlatMark {
-    static constexpr int kGroupBits = 29;  ///< fewer than a float's bits below those that make it such a number
+    static constexpr int kGroupBits = 29;  ///< with so many bits free, a float stays finite and at most -2
     static constexpr ScalarOf<Int<Real>> kSign = std::bit_cast<ScalarOf<Int<Real>>>(ScalarOf<Real>(-2));
 
     RAYPOOL_INLINE static Real make(const Int<Real>& group) { return of_bits<Real>(group | Int<Real>(kSign)); }
