@@ -2,7 +2,8 @@
 ///
 /// The binary tree is a binned surface-area-heuristic build (Wald, "On fast Construction of SAH-based Bounding Volume
 /// Hierarchies", 2007) whose leaves are priced by the SIMD blocks they fill, not by their primitives. A moving
-/// primitive is bounded over the whole shutter. The tree's shape never shows in an image (shapes.h says why).
+/// primitive is bounded over the whole shutter while the tree is built (node_motion.h then bounds it at each time). The
+/// tree's shape never shows in an image (shapes.h says why).
 #pragma once
 
 #include <bit>
@@ -58,6 +59,13 @@ template <class Scalar, int width>
 struct alignas(64) WideNode {
     Scalar bounds[3][2][width];
     std::int32_t child[width];  ///< a node's index; ~index of a leaf; unused lanes have an empty box
+};
+
+/// The bounds of a node's children along one axis at a time within [0, 1]: start + time change. [0] low, [1] high.
+template <class Scalar, int width>
+struct alignas(64) NodeMotion {
+    Scalar start[2][width];
+    Scalar change[2][width];
 };
 
 template <class Scalar, int width>

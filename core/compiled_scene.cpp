@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/large_boxes.h"
+#include "core/node_motion.h"
 #include "core/shape_bounds.h"
 
 namespace raypool {
@@ -177,6 +178,7 @@ class Compiler {
         }
         out_.sphere_tree = block_tree<SphereBlock<Scalar, kWidth>>(
             boxes, ids, [&](std::span<const std::uint32_t> in_leaf) { return sphere_block(in_leaf); });
+        for (int axis = 0; axis < 3; ++axis) out_.sphere_tree.motion[axis] = node_motion(out_.sphere_tree, axis);
     }
 
     void add_flats() {

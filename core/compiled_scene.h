@@ -115,7 +115,8 @@ struct alignas(64) FlatBlock {
 /// A tree whose leaf i is block i.
 template <class Block, class Scalar, int width>
 struct BlockTree {
-    std::vector<WideNode<Scalar, width>> nodes;
+    std::vector<WideNode<Scalar, width>> nodes;        ///< their bounds hold over all times
+    std::vector<NodeMotion<Scalar, width>> motion[3];  ///< by axis, along nodes; empty where no shape moves along it
     std::vector<Block> blocks;
     int depth = 0;
 };
@@ -177,6 +178,7 @@ struct CompiledScene {
         visit(self.planes);
         const auto visit_tree = [&](auto& tree) {
             visit(tree.nodes);
+            for (auto& along_axis : tree.motion) visit(along_axis);
             visit(tree.blocks);
         };
         visit_tree(self.sphere_tree);

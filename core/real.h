@@ -357,6 +357,34 @@ RAYPOOL_INLINE Uint32<Real> lane_numbers() {
     }
 }
 
+/// compress_store() of many registers with the same bits: where a lane goes is found once, and lanes of 32 bits then
+/// take one instruction a register.
+template <class Real>
+class LanePacker {
+  public:
+    RAYPOOL_INLINE explicit LanePacker(unsigned bits) : bits_(bits) {
+        if constexpr (kIsPermuted) {
+            const auto numbers = std::bit_cast<detail::IntegerRegister<Uint32<Real>>>(lane_numbers<Real>());
+            order_ = std::bit_cast<Uint32<Real>>(x86::compress32(numbers, bits));
+        }
+    }
+    template <class V, class T>
+    RAYPOOL_INLINE void store(T* target, const V& v) const {
+        if constexpr (kIsPermuted) {
+            using Register = detail::IntegerRegister<V>;
+            const Register packed = x86::permute32(std::bit_cast<Register>(v), std::bit_cast<Register>(order_));
+            std::bit_cast<V>(packed).copy_to(target, stdx::element_aligned);
+        } else {
+            compress_store(target, v, bits_);
+        }
+    }
+
+  private:
+    static constexpr bool kIsPermuted = Simd<Real> && sizeof(ScalarOf<Real>) == 4;
+    unsigned bits_;
+    Uint32<Real> order_;
+};
+
 /// No lane may be NaN.
 template <class Real>
 RAYPOOL_INLINE ScalarOf<Real> greatest_lane(const Real& v) {
@@ -389,13 +417,16 @@ template <int count, class Real>
 RAYPOOL_INLINE void load_rows_at(const ScalarOf<Real>* table, const std::uint32_t* offset, Real* column) {
     static_assert(count % 4 == 0);
     if constexpr (Simd<Real> && std::same_as<ScalarOf<Real>, float>) {
-        for (int first = 0; first < count; first += 4) {
+        const auto load_block = [&]<int columns>(int first, std::integral_constant<int, columns>) {
             const float* rows[kLanes<Real>];
             for (int i = 0; i < kLanes<Real>; ++i) rows[i] = table + first + offset[i];
-            detail::RealRegister<Real> block[4];
+            detail::RealRegister<Real> block[columns];
             x86::transpose_rows(rows, block);
-            for (int k = 0; k < 4; ++k) column[first + k] = std::bit_cast<Real>(block[k]);
-        }
+            for (int k = 0; k < columns; ++k) column[first + k] = std::bit_cast<Real>(block[k]);
+        };
+        constexpr int kEights = count / 8 * 8;
+        for (int first = 0; first < kEights; first += 8) load_block(first, std::integral_constant<int, 8>{});
+        for (int first = kEights; first < count; first += 4) load_block(first, std::integral_constant<int, 4>{});
     } else if constexpr (Simd<Real>) {
         for (int k = 0; k < count; ++k) column[k] = Real([&](auto i) { return table[offset[i] + k]; });
     } else {

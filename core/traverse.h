@@ -93,6 +93,18 @@ RAYPOOL_INLINE Mask<Real> is_leaving(const std::int32_t* id, std::int32_t leavin
     return as_mask<Real>(stdx::static_simd_cast<Int<Real>>(ids) == Int<Real>(leaving_id));
 }
 
+/// The bounds of a node's children along an axis at the ray's time: the lower, or of side 1 the upper.
+template <SceneNeeds needs, class Boxes, class Tree>
+RAYPOOL_INLINE Boxes bounds_at(const Tree& tree, std::size_t node, int axis, int side, const Boxes& time) {
+    if constexpr (needs.motion) {
+        if (!tree.motion[axis].empty()) {
+            const auto& motion = tree.motion[axis][node];
+            return mad<Boxes>(time, load<Boxes>(motion.change[side]), load<Boxes>(motion.start[side]));
+        }
+    }
+    return load<Boxes>(tree.nodes[node].bounds[axis][side]);
+}
+
 /// Takes the closest of the lanes in `bits`.
 template <class Real>
 RAYPOOL_INLINE void keep_closest(const Real& t, const std::int32_t* id, unsigned bits, Hit<ScalarOf<Real>>& hit) {
@@ -165,13 +177,14 @@ RAYPOOL_INLINE void walk(const BlockTree<Block, ScalarOf<Real>, kLanes<Real>>& t
     Entry* top = stack;
     for (;;) {
         if (child >= 0) {
-            const auto& node = tree.nodes[child];
+            const auto index = static_cast<std::size_t>(child);
+            const auto& node = tree.nodes[index];
             work.count(node);
             Vec3<Real> near;
             Vec3<Real> far;
             for (int i = 0; i < 3; ++i) {
-                near[i] = load<Real>(node.bounds[i][ray.sign[i]]);
-                far[i] = load<Real>(node.bounds[i][1 - ray.sign[i]]);
+                near[i] = bounds_at<needs, Real>(tree, index, i, ray.sign[i], ray.time);
+                far[i] = bounds_at<needs, Real>(tree, index, i, 1 - ray.sign[i], ray.time);
             }
             const Interval<Real> inside = box_interval<Real>(near, far, ray.origin, ray.inverse, Real(hit.t));
             alignas(64) S enter[kLanes<Real>];

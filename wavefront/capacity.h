@@ -19,7 +19,9 @@ namespace raypool::wavefront {
 template <class Scalar>
 std::size_t tree_bytes(const CompiledScene<Scalar>& scene) {
     const auto bytes = [](const auto& tree) {
-        return tree.nodes.size() * sizeof(tree.nodes[0]) + tree.blocks.size() * sizeof(tree.blocks[0]);
+        std::size_t all = tree.nodes.size() * sizeof(tree.nodes[0]) + tree.blocks.size() * sizeof(tree.blocks[0]);
+        for (const auto& along_axis : tree.motion) all += along_axis.size() * sizeof(along_axis[0]);
+        return all;
     };
     return bytes(scene.sphere_tree) + bytes(scene.quad_tree);
 }

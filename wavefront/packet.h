@@ -22,10 +22,11 @@ RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, co
     std::int32_t child = 0;
     for (;;) {
         if (child >= 0) {
-            const auto& node = tree.nodes[static_cast<std::size_t>(child)];
+            const auto index = static_cast<std::size_t>(child);
+            const auto& node = tree.nodes[index];
             Entry* const bottom = top;
             for (int i = 0; i < kWidth; ++i) {
-                const Interval<Real> inside = child_interval<Real>(node, i, rays, hit.t);
+                const Interval<Real> inside = child_interval<needs, Real>(tree, index, i, rays, hit.t);
                 const unsigned bits = mask_bits(is_active && inside.enter <= inside.exit);
                 work.count_boxes(node, i, mask_bits(is_active));
                 if (bits == 0) continue;

@@ -105,9 +105,10 @@ class ColumnsOfKind {
     RAYPOOL_INLINE void append(std::size_t first, const RayRecord<Real>& record, unsigned bits, std::size_t end) {
         std::byte* column = memory_.get();
         if (first + kLanes<Real> <= end) [[likely]] {
+            const LanePacker<Real> packer(bits);
             for_each_field<needs>(record, [&](const auto& field) {
                 using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;
-                compress_store(reinterpret_cast<T*>(column) + first, field, bits);
+                packer.store(reinterpret_cast<T*>(column) + first, field);
                 column += stride_ * sizeof(T);
             });
         } else {

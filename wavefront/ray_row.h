@@ -7,10 +7,11 @@
 
 namespace raypool::wavefront {
 
-/// Integers are kept as the value of a scalar.
+/// Integers are kept as the value of a scalar. The first eight are what a test of boxes reads, and the
+/// last eight what a test of spheres reads.
 template <class Scalar>
 struct alignas(16) RayRow {
-    enum Column { kOrigin = 0, kLeaving = 3, kScale = 4, kDistance = 7, kDirection = 8, kTime = 11, kColumns = 12 };
+    enum Column { kScale = 0, kDistance = 3, kOrigin = 4, kTime = 7, kDirection = 8, kLeaving = 11, kColumns = 12 };
     Scalar value[kColumns];  ///< kScale: 1 / direction; kDistance: of the closest hit so far
 };
 

@@ -61,14 +61,14 @@ class SpherePairs {
     RAYPOOL_INLINE void find_in_list(const Row* rows, const std::uint32_t* list, std::size_t count, Work& work) {
         constexpr std::size_t kRays = kLanes<Real>;
         for (std::size_t first = 0; first < count; first += kRays) {
-            Real near[4];
-            Real far[4];
-            load_rows_at<4, Real>(rows->value + Row::kOrigin, list + first, near);
-            load_rows_at<4, Real>(rows->value + Row::kDirection, list + first, far);
-            const Ray<Real> ray{columns(near, 0), columns(far, 0), far[Row::kTime - Row::kDirection]};
+            constexpr int kColumns = Row::kColumns - Row::kOrigin;
+            Real row[kColumns];
+            load_rows_at<kColumns, Real>(rows->value + Row::kOrigin, list + first, row);
+            const Ray<Real> ray{columns(row, 0), columns(row, Row::kDirection - Row::kOrigin),
+                                row[Row::kTime - Row::kOrigin]};
             const unsigned valid = first + kRays <= count ? (1U << kRays) - 1 : (1U << (count - first)) - 1;
-            find<needs, Real>(ray, to_int<Real>(near[Row::kLeaving]), Uint32<Real>(list + first, stdx::element_aligned),
-                              valid, work);
+            find<needs, Real>(ray, to_int<Real>(row[Row::kLeaving - Row::kOrigin]),
+                              Uint32<Real>(list + first, stdx::element_aligned), valid, work);
         }
     }
 

@@ -344,18 +344,10 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
         stdx::static_simd_cast<Ids>(hit.primitive_id).copy_to(stream_.primitive_id() + i, stdx::element_aligned);
         Vec3<Real> scale;
         for (int k = 0; k < 3; ++k) scale[k] = Real(1) / rays.ray.direction[k];
-        const Real column[12] = {rays.ray.origin[0],
-                                 rays.ray.origin[1],
-                                 rays.ray.origin[2],
-                                 to_real<Real>(rays.leaving_id),
-                                 scale[0],
-                                 scale[1],
-                                 scale[2],
-                                 hit.t,
-                                 rays.ray.direction[0],
-                                 rays.ray.direction[1],
-                                 rays.ray.direction[2],
-                                 rays.ray.time};
+        const Vec3<Real>& origin = rays.ray.origin;
+        const Vec3<Real>& direction = rays.ray.direction;
+        const Real column[12] = {scale[0], scale[1], scale[2], hit.t, origin[0], origin[1], origin[2], rays.ray.time,
+                                 direction[0], direction[1], direction[2], to_real<Real>(rays.leaving_id)};
         store_rows<12, Real>(stream_.rows()[i].value, column);
     }
 

@@ -84,13 +84,13 @@ class StreamWalk {
         if (child < 0) {
             visit_leaf(tree_.blocks[static_cast<std::size_t>(~child)], list, count, free);
         } else {
-            visit_node(tree_.nodes[static_cast<std::size_t>(child)], list, count, free);
+            visit_node(static_cast<std::size_t>(child), list, count, free);
         }
     }
 
   private:
-    void visit_node(const WideNode<S, kWidth>& node, const std::uint32_t* list, std::size_t count,
-                    std::uint32_t* free) {
+    void visit_node(std::size_t index, const std::uint32_t* list, std::size_t count, std::uint32_t* free) {
+        const auto& node = tree_.nodes[index];
         const std::size_t room = count + kRays;  // a register is stored whole behind the last ray
         std::uint32_t* end[kWidth];
         for (int i = 0; i < kWidth; ++i) end[i] = free + static_cast<std::size_t>(i) * room;
@@ -99,6 +99,7 @@ class StreamWalk {
             load_rows_at<8, Real>(hits_.rows->value, list + first, row);
             WideRays<Real> rays;
             rays.ray.origin = columns(row, Row::kOrigin);
+            rays.ray.time = row[Row::kTime];
             rays.inverse = inverse_of_scale<Real>(columns(row, Row::kScale));
             Real limit = row[Row::kDistance];
             unsigned valid = (1U << kRays) - 1;
@@ -108,7 +109,7 @@ class StreamWalk {
             }
             const Uint32<Real> offset(list + first, stdx::element_aligned);
             for (int i = 0; i < kWidth; ++i) {
-                const Interval<Real> inside = child_interval<Real>(node, i, rays, limit);
+                const Interval<Real> inside = child_interval<needs, Real>(tree_, index, i, rays, limit);
                 const unsigned bits = mask_bits(inside.enter <= inside.exit);
                 work_.count_boxes(node, i, valid);
                 compress_store(end[i], offset, bits);

@@ -63,18 +63,21 @@ std::string commit_of(const fs::path& command) {
     return found.is_object() ? found.value(json::json_pointer("/environment/commit"), std::string()) : std::string();
 }
 
+#ifdef __AVX512F__
+constexpr bool kCanRunInValgrind = false;  ///< it knows no AVX-512
+#else
+constexpr bool kCanRunInValgrind = true;
+#endif
+
 CachegrindCommand find_command() {
     if (!has_valgrind()) return {{}, "valgrind is not installed"};
     const fs::path own = fs::read_symlink("/proc/self/exe");
-#ifdef __AVX512F__
+    if (kCanRunInValgrind) return {own, ""};
     const fs::path twin = own.parent_path() / "../../portable/cli/raypool";
     if (!fs::exists(twin)) return {{}, "valgrind knows no AVX-512: build the preset portable"};
     if (commit_of(twin) != environment_json().at("commit").get<std::string>())
         return {{}, "the build of the preset portable is of another commit: build it again"};
     return {fs::canonical(twin), ""};
-#else
-    return {own, ""};
-#endif
 }
 
 }  // namespace

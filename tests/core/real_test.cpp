@@ -121,26 +121,30 @@ TEST(RealOperations, MasksTellTheBitOfEachLane) {
     expect_masks_tell_their_bits<stdx::native_simd<double>>();
 }
 
-/// Every pattern of lanes, and both the numbers and the words that travel beside them.
-template <class V, class T>
+/// Every pattern of lanes, and both the numbers and the words that travel beside them; one register alone, and as one of
+/// many.
+template <class Real, class V, class T>
 void expect_chosen_lanes_at_the_front(int lanes) {
     T all[16];
     for (int i = 0; i < lanes; ++i) all[i] = static_cast<T>(100 + i);
     const V v(all, stdx::element_aligned);
     for (unsigned pattern = 0; pattern < 1U << static_cast<unsigned>(lanes); ++pattern) {
         T target[32] = {};  // room for a whole vector behind the last one
+        T packed[32] = {};
         compress_store(target, v, pattern);
-        const T* next = target;
+        LanePacker<Real>(pattern).store(packed, v);
+        int next = 0;
         for (int i = 0; i < lanes; ++i) {
             if ((pattern >> static_cast<unsigned>(i) & 1U) == 0) continue;
-            ASSERT_EQ(*next++, all[i]) << pattern;
+            ASSERT_EQ(target[next], all[i]) << pattern;
+            ASSERT_EQ(packed[next++], all[i]) << pattern;
         }
     }
 }
 template <class Real>
 void expect_compress_store_works() {
-    expect_chosen_lanes_at_the_front<Real, ScalarOf<Real>>(kLanes<Real>);
-    expect_chosen_lanes_at_the_front<Uint32<Real>, std::uint32_t>(kLanes<Real>);
+    expect_chosen_lanes_at_the_front<Real, Real, ScalarOf<Real>>(kLanes<Real>);
+    expect_chosen_lanes_at_the_front<Real, Uint32<Real>, std::uint32_t>(kLanes<Real>);
 }
 
 TEST(RealOperations, CompressTheChosenLanesToTheFront) {
