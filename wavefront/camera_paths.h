@@ -77,45 +77,53 @@ class CameraPaths {
         CameraLanes<Real> lanes;
         lanes.count = count;
         left_ -= count;
-        if (sample_ + count <= samples_) {  // all of one pixel
-            const std::int64_t pixel = pixel_at(x_, y_);
-            lanes.x = Real(static_cast<ScalarOf<Real>>(pixels_ == nullptr ? x_ : pixel % image_width_));
-            lanes.y = Real(static_cast<ScalarOf<Real>>(pixels_ == nullptr ? y_ : pixel / image_width_));
-            lanes.pixel = Uint32<Real>(static_cast<std::uint32_t>(pixel));
-            lanes.sample = Uint32<Real>(static_cast<std::uint32_t>(first_sample_ + sample_)) + lane_numbers<Real>();
-            sample_ += count;
-            if (sample_ == samples_) next_pixel();
-        } else {
-            fill(lanes, count);
+        if constexpr (Simd<Real>) {
+            if (sample_ + count > samples_) {
+                fill(lanes, count);
+                return lanes;
+            }
         }
+        const std::int64_t pixel = pixel_at(x_, y_);  // one for all
+        lanes.x = Real(static_cast<ScalarOf<Real>>(pixels_ == nullptr ? x_ : pixel % image_width_));
+        lanes.y = Real(static_cast<ScalarOf<Real>>(pixels_ == nullptr ? y_ : pixel / image_width_));
+        lanes.pixel = Uint32<Real>(static_cast<std::uint32_t>(pixel));
+        lanes.sample = Uint32<Real>(static_cast<std::uint32_t>(first_sample_ + sample_)) + lane_numbers<Real>();
+        sample_ += count;
+        if (sample_ == samples_) next_pixel();
         return lanes;
     }
 
   private:
+    /// Lanes of several pixels. The last path is repeated in the lanes beyond `count`.
     template <class Real>
-    [[gnu::noinline]] void fill(CameraLanes<Real>& lanes, int count) {
-        std::int64_t x = x_;
-        std::int64_t y = y_;
-        std::int64_t sample = sample_;
-        for (int i = 0; i < kLanes<Real>; ++i) {
-            if (i < count) {
-                x = x_, y = y_, sample = sample_;
-                if (++sample_ == samples_) next_pixel();
+    [[gnu::noinline]] void fill(CameraLanes<Real>& lanes, int count) requires Simd<Real> {
+        alignas(64) ScalarOf<Real> x[kLanes<Real>];
+        alignas(64) ScalarOf<Real> y[kLanes<Real>];
+        alignas(64) std::uint32_t pixel[kLanes<Real>];
+        alignas(64) std::uint32_t sample[kLanes<Real>];
+        for (int i = 0; i < count;) {
+            const auto here = static_cast<int>(std::min<std::int64_t>(count - i, samples_ - sample_));
+            const std::int64_t at = pixel_at(x_, y_);
+            const std::int64_t column = pixels_ == nullptr ? x_ : at % image_width_;
+            const std::int64_t row = pixels_ == nullptr ? y_ : at / image_width_;
+            for (const int end = i + here; i < end; ++i) {
+                x[i] = static_cast<ScalarOf<Real>>(column);
+                y[i] = static_cast<ScalarOf<Real>>(row);
+                pixel[i] = static_cast<std::uint32_t>(at);
+                sample[i] = static_cast<std::uint32_t>(first_sample_ + sample_++);
             }
-            const std::int64_t pixel = pixel_at(x, y);
-            set_lane(lanes.x, i, pixels_ == nullptr ? x : pixel % image_width_);
-            set_lane(lanes.y, i, pixels_ == nullptr ? y : pixel / image_width_);
-            set_lane(lanes.pixel, i, pixel);
-            set_lane(lanes.sample, i, first_sample_ + sample);
+            if (sample_ == samples_) next_pixel();
         }
-    }
-    template <class V>
-    static void set_lane(V& v, int i, std::int64_t value) {
-        if constexpr (Simd<V>) {
-            v[i] = static_cast<typename V::value_type>(value);
-        } else {
-            v = static_cast<V>(value);
+        for (int i = count; i < kLanes<Real>; ++i) {
+            x[i] = x[count - 1];
+            y[i] = y[count - 1];
+            pixel[i] = pixel[count - 1];
+            sample[i] = sample[count - 1];
         }
+        lanes.x = Real(x, stdx::vector_aligned);
+        lanes.y = Real(y, stdx::vector_aligned);
+        lanes.pixel = Uint32<Real>(pixel, stdx::vector_aligned);
+        lanes.sample = Uint32<Real>(sample, stdx::vector_aligned);
     }
 
     [[nodiscard]] std::int64_t pixel_at(std::int64_t x, std::int64_t y) const {

@@ -1,6 +1,6 @@
 // One image, continued: every pool makes the sums that recursion makes, with every knob in every position.
 //
-// A sample of the matrix runs by default. RAYPOOL_FULL_MATRIX=1 runs all of it (scripts/hash_matrix).
+// A sample of the matrix runs by default. RAYPOOL_MATRIX_STRIDE=1 runs all of it (scripts/hash_matrix).
 
 #include <gtest/gtest.h>
 
@@ -100,7 +100,8 @@ std::size_t stride() {
 #else
     constexpr std::size_t kSample = 1009;  // sanitizers are slow
 #endif
-    return std::getenv("RAYPOOL_FULL_MATRIX") != nullptr ? 1 : kSample;
+    const char* wanted = std::getenv("RAYPOOL_MATRIX_STRIDE");
+    return wanted != nullptr ? std::max<std::size_t>(1, std::strtoul(wanted, nullptr, 10)) : kSample;
 }
 
 class PoolMatrix : public testing::TestWithParam<PoolCase> {};
