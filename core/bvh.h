@@ -62,6 +62,7 @@ struct alignas(64) WideNode {
 };
 
 /// The bounds of a node's children along one axis at a time within [0, 1]: start + time change. [0] low, [1] high.
+/// Unused lanes have an empty box that stays.
 template <class Scalar, int width>
 struct alignas(64) NodeMotion {
     Scalar start[2][width];

@@ -137,7 +137,8 @@ class Compiler {
             Row row = surface_row(sphere.material_id, Shape::Sphere);
             for (int i = 0; i < 3; ++i) {
                 row.value[Row::kCenter + i] = static_cast<Scalar>(sphere.center0[i]);
-                row.value[Row::kMotion + i] = static_cast<Scalar>(sphere.center1[i] - sphere.center0[i]);
+                if (out_.needs.motion)  // or all rays are of time 0
+                    row.value[Row::kMotion + i] = static_cast<Scalar>(sphere.center1[i] - sphere.center0[i]);
             }
             row.value[Row::kRadius] = static_cast<Scalar>(sphere.radius);
             out_.surfaces.push_back(row);
@@ -165,7 +166,9 @@ class Compiler {
     void add_spheres() {
         Ids ids = shown_ids(0, scene_.spheres.size());
         const auto boxes_of = [&](const Ids& of) {
-            return boxes_by_id(of, [&](std::uint32_t id) { return sphere_box<Scalar>(scene_.spheres[id]); });
+            return boxes_by_id(of, [&](std::uint32_t id) {
+                return sphere_box<Scalar>(scene_.spheres[id], out_.needs.motion ? 1 : 0);
+            });
         };
         std::vector<Box> boxes = boxes_of(ids);
         Ids large = large_boxes(boxes, kWidth);
@@ -178,6 +181,7 @@ class Compiler {
         }
         out_.sphere_tree = block_tree<SphereBlock<Scalar, kWidth>>(
             boxes, ids, [&](std::span<const std::uint32_t> in_leaf) { return sphere_block(in_leaf); });
+        if (!out_.needs.motion) return;
         for (int axis = 0; axis < 3; ++axis) out_.sphere_tree.motion[axis] = node_motion(out_.sphere_tree, axis);
     }
 

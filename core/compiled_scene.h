@@ -116,7 +116,7 @@ struct alignas(64) FlatBlock {
 template <class Block, class Scalar, int width>
 struct BlockTree {
     std::vector<WideNode<Scalar, width>> nodes;        ///< their bounds hold over all times
-    std::vector<NodeMotion<Scalar, width>> motion[3];  ///< by axis, along nodes; empty where no shape moves along it
+    std::vector<NodeMotion<Scalar, width>> motion[3];  ///< by axis, then by node; empty where no shape moves along the axis
     std::vector<Block> blocks;
     int depth = 0;
 };

@@ -52,9 +52,9 @@ EndBounds<Scalar> end_bounds(const SphereBlock<Scalar, lanes>& block, int axis) 
 /// The motion of a tree's nodes along an axis; empty where none of its spheres moves along it.
 ///
 /// What a kernel makes of it holds what it makes of each sphere's own box, to the last bit. Let A be the greatest
-/// coordinate of a child's bounds, u = eps / 2. A sphere's box is center_at(time) -+ padded radius, four roundings of
-/// numbers of at most 2 A: 5 u A. The line's ends have two roundings, the change one, its product with time one, the sum
-/// one, all of numbers of at most 2 A, and the room itself one: 9 u A. 16 eps A are left as room.
+/// coordinate of a child's bounds, u = eps / 2. A sphere's box has three roundings: of the product, at most 2 A, of the sum
+/// and of the difference: 4 u A. Of the line, each end has two, the room one, the change, at most 2 A, one, and mad() one:
+/// 6 u A. That is 5 eps A in all, and 16 eps A are left as room.
 template <class Scalar, int width>
 std::vector<NodeMotion<Scalar, width>> node_motion(const BlockTree<SphereBlock<Scalar, width>, Scalar, width>& tree,
                                                    int axis) {

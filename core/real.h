@@ -417,16 +417,18 @@ template <int count, class Real>
 RAYPOOL_INLINE void load_rows_at(const ScalarOf<Real>* table, const std::uint32_t* offset, Real* column) {
     static_assert(count % 4 == 0);
     if constexpr (Simd<Real> && std::same_as<ScalarOf<Real>, float>) {
-        const auto load_block = [&]<int columns>(int first, std::integral_constant<int, columns>) {
+        const auto load_block = [&]<int columns>(int first) {
             const float* rows[kLanes<Real>];
             for (int i = 0; i < kLanes<Real>; ++i) rows[i] = table + first + offset[i];
             detail::RealRegister<Real> block[columns];
             x86::transpose_rows(rows, block);
             for (int k = 0; k < columns; ++k) column[first + k] = std::bit_cast<Real>(block[k]);
         };
-        constexpr int kEights = count / 8 * 8;
-        for (int first = 0; first < kEights; first += 8) load_block(first, std::integral_constant<int, 8>{});
-        for (int first = kEights; first < count; first += 4) load_block(first, std::integral_constant<int, 4>{});
+        int first = 0;
+        if constexpr (kLanes<Real> == 16) {
+            for (; first + 8 <= count; first += 8) load_block.template operator()<8>(first);
+        }
+        for (; first < count; first += 4) load_block.template operator()<4>(first);
     } else if constexpr (Simd<Real>) {
         for (int k = 0; k < count; ++k) column[k] = Real([&](auto i) { return table[offset[i] + k]; });
     } else {

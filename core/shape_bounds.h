@@ -34,12 +34,13 @@ Box widened(const Box& box) {
     return wide;
 }
 
-/// The box over all times, exact in Scalar. It holds every box that a kernel makes of center_at(time) -+ padded radius.
+/// The box from time 0 to `end`, 0 or 1, exact in Scalar. It holds every box that a kernel makes of
+/// center_at(time) -+ padded radius.
 template <class Scalar>
-Box sphere_box(const Sphere& sphere) {
+Box sphere_box(const Sphere& sphere, double end) {
     const Scalar r = padded_radius<Scalar>(sphere);
     Box box;
-    for (const double time : {0.0, 1.0}) {
+    for (const double time : {0.0, end}) {
         for (int axis = 0; axis < 3; ++axis) {
             const Scalar from = static_cast<Scalar>(sphere.center0[axis]);
             const Scalar motion = static_cast<Scalar>(sphere.center1[axis] - sphere.center0[axis]);

@@ -1,9 +1,10 @@
 /// A loop whose iterations are handed out to the threads of a parallel region, as a LoopSchedule says: by OpenMP's
-/// `for` or its `taskloop`.
+/// `for` or by its tasks.
 #pragma once
 
 #include <omp.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -45,14 +46,18 @@ class TeamLoop {
         // Threads do tasks while they wait at the end of the single.
 #pragma omp single
         {
-            const int chunk = settings_.schedule.chunk;
-            const auto end = static_cast<std::uint64_t>(count);  // clang's bounds of a taskloop are unsigned
+            const std::int64_t chunk = settings_.schedule.chunk;
             if (chunk == 0) {
+                const auto end = static_cast<std::uint64_t>(count);  // clang's bounds of a taskloop are unsigned
 #pragma omp taskloop
                 for (std::uint64_t i = 0; i < end; ++i) do_task(static_cast<std::int64_t>(i));
             } else {
-#pragma omp taskloop grainsize(chunk)
-                for (std::uint64_t i = 0; i < end; ++i) do_task(static_cast<std::int64_t>(i));
+                // Not a taskloop with a grainsize: where that makes more than 64 tasks a thread, libgomp has one thread do
+                // them all. Of single tasks it has the thread that makes them do those that are too many.
+                for (std::int64_t begin = 0; begin < count; begin += chunk) {
+#pragma omp task firstprivate(begin)
+                    for (std::int64_t i = begin; i < std::min(begin + chunk, count); ++i) do_task(i);
+                }
             }
         }
         const double end_s = omp_get_wtime();

@@ -93,17 +93,47 @@ RAYPOOL_INLINE Mask<Real> is_leaving(const std::int32_t* id, std::int32_t leavin
     return as_mask<Real>(stdx::static_simd_cast<Int<Real>>(ids) == Int<Real>(leaving_id));
 }
 
-/// The bounds of a node's children along an axis at the ray's time: the lower, or of side 1 the upper.
-template <SceneNeeds needs, class Boxes, class Tree>
-RAYPOOL_INLINE Boxes bounds_at(const Tree& tree, std::size_t node, int axis, int side, const Boxes& time) {
-    if constexpr (needs.motion) {
-        if (!tree.motion[axis].empty()) {
-            const auto& motion = tree.motion[axis][node];
-            return mad<Boxes>(time, load<Boxes>(motion.change[side]), load<Boxes>(motion.start[side]));
+/// The bounds of children of nodes at the time of a ray: of side 0 the lower, of side 1 the upper.
+template <SceneNeeds needs, class Tree>
+class TreeBounds {
+  public:
+    RAYPOOL_INLINE explicit TreeBounds(const Tree& tree) : nodes_(tree.nodes.data()) {
+        if constexpr (kCanMove) {
+            for (int axis = 0; axis < 3; ++axis)
+                motion_[axis] = tree.motion[axis].empty() ? nullptr : tree.motion[axis].data();
         }
     }
-    return load<Boxes>(tree.nodes[node].bounds[axis][side]);
-}
+    /// Of all children of a node.
+    template <class Boxes>
+    RAYPOOL_INLINE Boxes children(std::size_t node, int axis, int side, const Boxes& time) const {
+        if constexpr (kCanMove) {
+            if (motion_[axis] != nullptr) {
+                const auto& motion = motion_[axis][node];
+                return mad<Boxes>(time, load<Boxes>(motion.change[side]), load<Boxes>(motion.start[side]));
+            }
+        }
+        return load<Boxes>(nodes_[node].bounds[axis][side]);
+    }
+    /// Of one, for a register of rays.
+    template <class Real>
+    RAYPOOL_INLINE Real child(std::size_t node, int lane, int axis, int side, const Real& time) const {
+        if constexpr (kCanMove) {
+            if (motion_[axis] != nullptr) {
+                const auto& motion = motion_[axis][node];
+                return mad<Real>(time, Real(motion.change[side][lane]), Real(motion.start[side][lane]));
+            }
+        }
+        return Real(nodes_[node].bounds[axis][side][lane]);
+    }
+
+  private:
+    using Block = typename decltype(Tree::blocks)::value_type;
+    using Motion = typename std::remove_cvref_t<decltype(Tree::motion[0])>::value_type;
+    static constexpr bool kCanMove = needs.motion && requires(Block block) { block.motion; };
+
+    const typename decltype(Tree::nodes)::value_type* nodes_;
+    const Motion* motion_[3];  ///< null along an axis on which nothing moves
+};
 
 /// Takes the closest of the lanes in `bits`.
 template <class Real>
@@ -169,6 +199,7 @@ RAYPOOL_INLINE void walk(const BlockTree<Block, ScalarOf<Real>, kLanes<Real>>& t
                          Hit<ScalarOf<Real>>& hit, Work& work, std::int32_t child = 0) {
     using S = ScalarOf<Real>;
     if (tree.nodes.empty()) return;
+    const TreeBounds<needs, BlockTree<Block, S, kLanes<Real>>> bounds(tree);
     struct Entry {
         S enter;
         std::int32_t child;
@@ -183,8 +214,8 @@ RAYPOOL_INLINE void walk(const BlockTree<Block, ScalarOf<Real>, kLanes<Real>>& t
             Vec3<Real> near;
             Vec3<Real> far;
             for (int i = 0; i < 3; ++i) {
-                near[i] = bounds_at<needs, Real>(tree, index, i, ray.sign[i], ray.time);
-                far[i] = bounds_at<needs, Real>(tree, index, i, 1 - ray.sign[i], ray.time);
+                near[i] = bounds.template children<Real>(index, i, ray.sign[i], ray.time);
+                far[i] = bounds.template children<Real>(index, i, 1 - ray.sign[i], ray.time);
             }
             const Interval<Real> inside = box_interval<Real>(near, far, ray.origin, ray.inverse, Real(hit.t));
             alignas(64) S enter[kLanes<Real>];

@@ -15,7 +15,7 @@
 
 namespace raypool::wavefront {
 
-/// Of nodes and leaves.
+/// Of nodes, their motion and leaves.
 template <class Scalar>
 std::size_t tree_bytes(const CompiledScene<Scalar>& scene) {
     const auto bytes = [](const auto& tree) {

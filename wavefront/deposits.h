@@ -25,8 +25,9 @@ class Deposits {
     /// The lanes set in `bits`.
     template <class Real>
     RAYPOOL_INLINE void put(const Uint32<Real>& pixel, const Vec3<Real>& radiance, unsigned bits) {
-        compress_store(pixel_.data() + count_, pixel, bits);
-        for (int i = 0; i < 3; ++i) compress_store(rgb_[i].data() + count_, radiance[i], bits);
+        const LanePacker<Real> packer(bits);
+        packer.store(pixel_.data() + count_, pixel);
+        for (int i = 0; i < 3; ++i) packer.store(rgb_[i].data() + count_, radiance[i]);
         count_ += static_cast<std::size_t>(std::popcount(bits));
     }
     void clear() { count_ = 0; }

@@ -11,6 +11,7 @@ template <SceneNeeds needs, class Real, class Tree, class Work>
 RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, const Mask<Real>& is_active,
                                 Hit<Real>& hit, Work& work) {
     if (tree.nodes.empty()) return;
+    const raypool::detail::TreeBounds<needs, Tree> bounds(tree);
     using S = ScalarOf<Real>;
     constexpr int kWidth = kTreeWidth<S>;
     struct Entry {
@@ -26,7 +27,7 @@ RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, co
             const auto& node = tree.nodes[index];
             Entry* const bottom = top;
             for (int i = 0; i < kWidth; ++i) {
-                const Interval<Real> inside = child_interval<needs, Real>(tree, index, i, rays, hit.t);
+                const Interval<Real> inside = child_interval<Real>(bounds, index, i, rays, hit.t);
                 const unsigned bits = mask_bits(is_active && inside.enter <= inside.exit);
                 work.count_boxes(node, i, mask_bits(is_active));
                 if (bits == 0) continue;

@@ -90,6 +90,7 @@ class StreamWalk {
 
   private:
     void visit_node(std::size_t index, const std::uint32_t* list, std::size_t count, std::uint32_t* free) {
+        const raypool::detail::TreeBounds<needs, Tree> bounds(tree_);
         const auto& node = tree_.nodes[index];
         const std::size_t room = count + kRays;  // a register is stored whole behind the last ray
         std::uint32_t* end[kWidth];
@@ -109,7 +110,7 @@ class StreamWalk {
             }
             const Uint32<Real> offset(list + first, stdx::element_aligned);
             for (int i = 0; i < kWidth; ++i) {
-                const Interval<Real> inside = child_interval<needs, Real>(tree_, index, i, rays, limit);
+                const Interval<Real> inside = child_interval<Real>(bounds, index, i, rays, limit);
                 const unsigned bits = mask_bits(inside.enter <= inside.exit);
                 work_.count_boxes(node, i, valid);
                 compress_store(end[i], offset, bits);

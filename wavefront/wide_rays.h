@@ -121,21 +121,14 @@ RAYPOOL_INLINE void intersect_all(const Blocks& blocks, const WideRays<Real>& ra
 }
 
 /// Where the rays are inside child `lane` of a node, before `limit`.
-template <SceneNeeds needs, class Real, class Tree>
-RAYPOOL_INLINE Interval<Real> child_interval(const Tree& tree, std::size_t node, int lane, const WideRays<Real>& rays,
-                                             const Real& limit) {
+template <class Real, class Bounds>
+RAYPOOL_INLINE Interval<Real> child_interval(const Bounds& bounds, std::size_t node, int lane,
+                                             const WideRays<Real>& rays, const Real& limit) {
     Vec3<Real> near;
     Vec3<Real> far;
     for (int i = 0; i < 3; ++i) {
-        Real low(tree.nodes[node].bounds[i][0][lane]);
-        Real high(tree.nodes[node].bounds[i][1][lane]);
-        if constexpr (needs.motion) {
-            if (!tree.motion[i].empty()) {
-                const auto& motion = tree.motion[i][node];
-                low = mad<Real>(rays.ray.time, Real(motion.change[0][lane]), Real(motion.start[0][lane]));
-                high = mad<Real>(rays.ray.time, Real(motion.change[1][lane]), Real(motion.start[1][lane]));
-            }
-        }
+        const Real low = bounds.template child<Real>(node, lane, i, 0, rays.ray.time);
+        const Real high = bounds.template child<Real>(node, lane, i, 1, rays.ray.time);
         near[i] = select(rays.inverse.is_negative[i], high, low);
         far[i] = select(rays.inverse.is_negative[i], low, high);
     }

@@ -99,8 +99,10 @@ double our_boxes(double translation, std::int64_t times) {
         for (int k = 0; k < 3; ++k) {
             const Float128 low = Float128{center[k]} - s.radius;
             const Float128 high = Float128{center[k]} + s.radius;
-            is_outside = is_outside || low < s.leaf.bounds[0][k] || high > s.leaf.bounds[1][k] ||
-                         low < s.leaf.at(0, k, time) || high > s.leaf.at(1, k, time);
+            is_outside = is_outside || low < s.leaf.bounds[0][k] || high > s.leaf.bounds[1][k];
+            // Its own padded box, as kernels round it, must be inside too.
+            is_outside = is_outside || center[k] - s.padded_radius < s.leaf.at(0, k, time) ||
+                         center[k] + s.padded_radius > s.leaf.at(1, k, time);
         }
         outside += is_outside ? 1 : 0;
     }

@@ -36,6 +36,7 @@ std::vector<PaddedSphere<Scalar>> padded_spheres(const std::vector<Sphere>& sphe
     Scene scene;
     scene.textures.emplace_back();
     scene.materials.emplace_back();
+    scene.camera.shutter_close = 1;
     scene.spheres = spheres;
     for (Sphere& sphere : scene.spheres) sphere.material_id = 0;
     const CompiledScene<Scalar> compiled = compile<Scalar>(scene);

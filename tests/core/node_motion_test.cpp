@@ -29,16 +29,17 @@ Scene moving_cloud(int count, double translation, const Vector3d& common, double
     return scene;
 }
 
-/// A scalar is a register of one here; bounds_at() reads registers of all children.
 template <class Scalar>
 struct Side {
     Scalar low, high;
 };
+/// As single rays see it, who read the bounds of all children at once.
 template <class Scalar>
 Side<Scalar> child_bounds(const auto& tree, std::size_t node, int lane, int axis, Scalar time) {
     using Boxes = Wide<Scalar, kTreeWidth<Scalar>>;
-    const Boxes low = raypool::detail::bounds_at<kMoving, Boxes>(tree, node, axis, 0, Boxes(time));
-    const Boxes high = raypool::detail::bounds_at<kMoving, Boxes>(tree, node, axis, 1, Boxes(time));
+    const raypool::detail::TreeBounds<kMoving, std::remove_cvref_t<decltype(tree)>> bounds(tree);
+    const Boxes low = bounds.template children<Boxes>(node, axis, 0, Boxes(time));
+    const Boxes high = bounds.template children<Boxes>(node, axis, 1, Boxes(time));
     return {raypool::lane(low, lane), raypool::lane(high, lane)};
 }
 

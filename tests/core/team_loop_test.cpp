@@ -1,6 +1,9 @@
 /// A loop by any schedule: each iteration once, and by the visitor of the thread that does it.
 #include "core/team_loop.h"
 
+#include <chrono>
+#include <thread>
+
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -39,6 +42,21 @@ TEST(TeamLoop, DoesEachIterationOnceByTheVisitorOfItsThread) {
             }
         }
     }
+}
+
+/// A thousand tasks, far more than a runtime keeps in line for two threads.
+TEST(TeamLoop, SharesOutTasksHoweverMany) {
+    RenderSettings settings;
+    settings.threads = 2;
+    settings.schedule = parse_schedule("tasks,1");
+    TeamLoop loop(settings);
+    const RenderReport report = run_threads(settings, [&](ThreadWork& work, SampleAudit&) {
+        loop.run(1000, [&](std::int64_t) {
+            std::this_thread::sleep_for(std::chrono::microseconds(50));
+            ++work.paths;
+        });
+    });
+    for (const ThreadWork& thread : report.threads) EXPECT_GT(thread.paths, 100);
 }
 
 TEST(TeamLoop, CountsWaitingForTasksAsWaiting) {

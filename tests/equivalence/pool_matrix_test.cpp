@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <numeric>
 #include <vector>
 
+#include "core/error.h"
 #include "tests/equivalence/same_image.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
@@ -101,7 +103,10 @@ std::size_t stride() {
     constexpr std::size_t kSample = 1009;  // sanitizers are slow
 #endif
     const char* wanted = std::getenv("RAYPOOL_MATRIX_STRIDE");
-    return wanted != nullptr ? std::max<std::size_t>(1, std::strtoul(wanted, nullptr, 10)) : kSample;
+    if (wanted == nullptr) return kSample;
+    const std::size_t stride = std::strtoul(wanted, nullptr, 10);
+    RAYPOOL_CHECK(std::gcd(stride, std::size_t{6}) == 1, "RAYPOOL_MATRIX_STRIDE is 1 or a prime above 3");
+    return stride;
 }
 
 class PoolMatrix : public testing::TestWithParam<PoolCase> {};
