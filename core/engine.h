@@ -22,7 +22,7 @@ namespace raypool {
 struct CostImage;
 class Trace;
 
-/// How a render is handed out to threads: OpenMP's schedule clause; its tasks, one for each chunk; or
+/// How a render is handed out to threads: OpenMP's schedule clause; its taskloop, whose grainsize is the chunk; or
 /// balanced items (core/balanced_items.h), whichever thread is free. chunk 0 is OpenMP's default for the kind.
 struct LoopSchedule {
     enum class Kind : std::uint8_t { Static, Dynamic, Guided, Tasks, Balanced };

@@ -52,11 +52,13 @@ class TeamLoop {
 #pragma omp taskloop
                 for (std::uint64_t i = 0; i < end; ++i) do_task(static_cast<std::int64_t>(i));
             } else {
-                // Not a taskloop with a grainsize: where that makes more than 64 tasks a thread, libgomp has one thread do
-                // them all. Of single tasks it has the thread that makes them do those that are too many.
-                for (std::int64_t begin = 0; begin < count; begin += chunk) {
-#pragma omp task firstprivate(begin)
-                    for (std::int64_t i = begin; i < std::min(begin + chunk, count); ++i) do_task(i);
+                // A taskloop of more than 64 tasks a thread, libgomp has one thread do alone.
+                const std::int64_t most = 64 * chunk * omp_get_num_threads();
+                for (std::int64_t first = 0; first < count; first += most) {
+                    const auto begin = static_cast<std::uint64_t>(first);
+                    const auto end = static_cast<std::uint64_t>(std::min(first + most, count));
+#pragma omp taskloop grainsize(chunk)
+                    for (std::uint64_t i = begin; i < end; ++i) do_task(static_cast<std::int64_t>(i));
                 }
             }
         }
