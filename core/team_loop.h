@@ -52,7 +52,7 @@ class TeamLoop {
 #pragma omp taskloop
                 for (std::uint64_t i = 0; i < end; ++i) do_task(static_cast<std::int64_t>(i));
             } else {
-                // A taskloop of more than 64 tasks a thread, libgomp has one thread do alone.
+                // libgomp gives a taskloop of more than 64 tasks a thread to one thread alone.
                 const std::int64_t most = 64 * chunk * omp_get_num_threads();
                 for (std::int64_t first = 0; first < count; first += most) {
                     const auto begin = static_cast<std::uint64_t>(first);

@@ -4,7 +4,8 @@ set(Python3_ROOT_DIR /usr)  # the python3 that the distribution's packages (pyth
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME documentation
          COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/docs/check_docs.py ${PROJECT_SOURCE_DIR} $<TARGET_FILE:raypool>)
-set_tests_properties(documentation PROPERTIES LABELS slow COST 100)  # begun first, not to end last
+set_tests_properties(documentation PROPERTIES LABELS slow COST 100  # begun first, not to end last
+                                              ENVIRONMENT OMP_WAIT_POLICY=passive)
 
 if(RAYPOOL_SANITIZE MATCHES thread)
   # Without Archer, ThreadSanitizer takes the barriers of OpenMP for races. libomp loads it by itself where it finds it.

@@ -44,33 +44,27 @@ TEST(TeamLoop, DoesEachIterationOnceByTheVisitorOfItsThread) {
     }
 }
 
-/// A thousand tasks, far more than a runtime keeps in line for two threads.
-TEST(TeamLoop, SharesOutTasksHoweverMany) {
+/// `count` tasks of two threads. A thread's paths are the tasks that it did.
+RenderReport run_tasks(std::int64_t count, std::chrono::microseconds task) {
     RenderSettings settings;
     settings.threads = 2;
     settings.schedule = parse_schedule("tasks,1");
     TeamLoop loop(settings);
-    const RenderReport report = run_threads(settings, [&](ThreadWork& work, SampleAudit&) {
-        loop.run(1000, [&](std::int64_t) {
-            std::this_thread::sleep_for(std::chrono::microseconds(50));
+    return run_threads(settings, [&](ThreadWork& work, SampleAudit&) {
+        work.wait_s = loop.run(count, [&](std::int64_t) {
+            std::this_thread::sleep_for(task);  // so that the other thread runs on a busy machine too
             ++work.paths;
         });
     });
-    for (const ThreadWork& thread : report.threads) EXPECT_GT(thread.paths, 100);
+}
+
+/// Far more than a runtime keeps in line for two threads.
+TEST(TeamLoop, SharesOutTasksHoweverMany) {
+    for (const ThreadWork& thread : run_tasks(1000, std::chrono::microseconds(50)).threads) EXPECT_GT(thread.paths, 100);
 }
 
 TEST(TeamLoop, CountsWaitingForTasksAsWaiting) {
-    RenderSettings settings;
-    settings.threads = 2;
-    settings.schedule = parse_schedule("tasks,1");
-    TeamLoop loop(settings);
-    const RenderReport report = run_threads(settings, [&](ThreadWork& work, SampleAudit&) {
-        work.wait_s = loop.run(1, [&](std::int64_t) {
-            const double end_s = omp_get_wtime() + 0.05;
-            while (omp_get_wtime() < end_s) continue;
-            work.paths = 1;
-        });
-    });
+    const RenderReport report = run_tasks(1, std::chrono::milliseconds(50));
     for (const ThreadWork& thread : report.threads) {
         if (thread.paths == 0) {
             EXPECT_GT(thread.wait_s, 0.03);
