@@ -71,6 +71,14 @@ json stats_json(const RenderRecord& record) {
         for (std::size_t i = 0; i < kStageCount; ++i) round["stage_s"][kStageNames[i]] = work.stage_s[i];
         rounds.push_back(round);
     }
+    json lists = json::array();
+    for (const ListLevel& level : report.lists) {
+        if (level.lists == 0) break;  // the tree goes no deeper
+        lists.push_back({{"lists", level.lists},
+                         {"rays", level.rays},
+                         {"single_rays", level.single_rays},
+                         {"lanes", level.lanes}});
+    }
     json stats{
         {"hash", record.hash},
         {"seconds",
@@ -122,6 +130,7 @@ json stats_json(const RenderRecord& record) {
         stats["pool_rays"] = report.pool_rays;
         stats["pool_bytes"] = report.pool_bytes;
         stats["rounds"] = rounds;
+        stats["lists"] = lists;
     }
     return stats;
 }

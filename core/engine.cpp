@@ -9,8 +9,8 @@ namespace raypool {
 void RenderReport::add(const RenderReport& later) {
     seconds += later.seconds;
     setup_s += later.setup_s;
-    if (threads.size() < later.threads.size()) threads.resize(later.threads.size());
-    for (std::size_t i = 0; i < later.threads.size(); ++i) threads[i].add(later.threads[i]);
+    add_each<ThreadWork>(threads, later.threads);
+    add_each<ListLevel>(lists, later.lists);
     audit.add(later.audit);
     rounds.insert(rounds.end(), later.rounds.begin(), later.rounds.end());
     record_bytes = std::max(record_bytes, later.record_bytes);

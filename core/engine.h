@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -92,6 +93,21 @@ struct RoundWork {
     }
 };
 
+/// The lists of rays that a wavefront engine took to the nodes and leaves of one level of its trees.
+struct ListLevel {
+    std::int64_t lists = 0;
+    std::int64_t rays = 0;         ///< in all of them; a ray is in as many as it entered nodes and leaves
+    std::int64_t single_rays = 0;  ///< of these, in lists so short that their rays went on one by one, out of all lists
+    std::int64_t lanes = 0;        ///< of registers, for the others: (rays - single_rays) / lanes is how full they were
+
+    void add(const ListLevel& other) {
+        lists += other.lists;
+        rays += other.rays;
+        single_rays += other.single_rays;
+        lanes += other.lanes;
+    }
+};
+
 /// What one thread did. A cache line each, so that counting does not make threads wait for each other.
 struct alignas(64) ThreadWork {
     std::int64_t paths = 0;
@@ -113,6 +129,13 @@ struct alignas(64) ThreadWork {
     }
 };
 
+/// Adds figures to those of the same place, where there are none yet to nothing.
+template <class T>
+void add_each(std::vector<T>& sums, std::span<const T> later) {
+    if (sums.size() < later.size()) sums.resize(later.size());
+    for (std::size_t i = 0; i < later.size(); ++i) sums[i].add(later[i]);
+}
+
 struct RenderReport {
     /// Wall clock of all that an engine does for a render: setup_s, the parallel loops, and what brings sums that were
     /// kept elsewhere into the framebuffer. Of these, threads are busy or wait in all but setup_s.
@@ -121,6 +144,7 @@ struct RenderReport {
     std::vector<ThreadWork> threads;
     SampleAudit audit;
     std::vector<RoundWork> rounds;  ///< of a wavefront engine, with log_rounds or a trace
+    std::vector<ListLevel> lists;   ///< of a wavefront engine, with count_work: by level, the root first
     std::size_t record_bytes = 0;   ///< of a wavefront engine: moved in and out of the pool by a record
     std::size_t pool_rays = 0;      ///< of a wavefront engine: records that each pool has room for
     std::size_t pool_bytes = 0;     ///< of a wavefront engine: all pools, streams and accumulators at their largest

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "core/engine.h"
@@ -54,6 +55,8 @@ class RecordStages {
     /// Takes records [first, first + count) through one bounce. Returns how many survive, now at the front.
     virtual std::size_t advance(Records& records, std::size_t first, std::size_t count) = 0;
     virtual void report(ThreadWork& work, SampleAudit& audit) const = 0;
+    /// By level of the trees; none where they are not counted.
+    [[nodiscard]] virtual std::span<const ListLevel> lists() const = 0;
 
     [[nodiscard]] std::size_t overflow_count() const { return overflow_count_; }
     /// Moves the overflow to record `target`. Returns how many records that were.

@@ -7,6 +7,7 @@
 #include "core/shade.h"
 #include "core/traverse.h"
 #include "wavefront/engine.h"
+#include "wavefront/list_count.h"
 #include "wavefront/record_stages.h"
 
 namespace raypool::wavefront {
@@ -36,7 +37,7 @@ template <class Real>
 std::unique_ptr<RenderSession> begin(const CompiledScene<ScalarOf<Real>>& scene, const RenderSettings& settings,
                                      const PoolSettings& pool, Framebuffer& framebuffer) {
     if (settings.split_depth > 0 || settings.count_work)
-        return begin<kEverything, Real, WorkCount, Splitting::On>(scene, settings, pool, framebuffer);
+        return begin<kEverything, Real, ListCount, Splitting::On>(scene, settings, pool, framebuffer);
     return dispatch_needs<kFirstCompiledNeeds<ScalarOf<Real>>>(scene.needs, [&]<SceneNeeds needs>() {
         return begin<needs, Real, NoWorkCount, Splitting::Off>(scene, settings, pool, framebuffer);
     });

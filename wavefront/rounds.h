@@ -155,6 +155,7 @@ class ThreadPoolSession : public PoolSession<Scalar> {
     [[nodiscard]] const std::vector<RoundWork>& rounds(std::size_t thread) const override {
         return pools_[thread]->stages().log().rounds();
     }
+    [[nodiscard]] std::span<const ListLevel> lists(std::size_t thread) const override { return pools_[thread]->stages().lists(); }
 
     std::vector<std::unique_ptr<Pool>> pools_;  ///< by thread
 };
@@ -255,6 +256,7 @@ class SharedPoolSession : public PoolSession<Scalar> {
     [[nodiscard]] const std::vector<RoundWork>& rounds(std::size_t thread) const override {
         return stages_[thread]->log().rounds();
     }
+    [[nodiscard]] std::span<const ListLevel> lists(std::size_t thread) const override { return stages_[thread]->lists(); }
 
     std::unique_ptr<SharedPool<needs, Scalar>> pool_;
     std::vector<std::unique_ptr<ThreadStages>> stages_;  ///< by thread

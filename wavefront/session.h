@@ -43,6 +43,7 @@ class PoolSession : public RenderSession {
     virtual RenderReport run(const RenderUnit& unit) = 0;
     /// What a thread logged of the unit.
     [[nodiscard]] virtual const std::vector<RoundWork>& rounds(std::size_t thread) const = 0;
+    [[nodiscard]] virtual std::span<const ListLevel> lists(std::size_t thread) const = 0;
 
     /// Of a session that is made: the settings' threads are those that OpenMP gives.
     [[nodiscard]] const RenderContext<Scalar>& context() const { return context_; }
@@ -83,9 +84,8 @@ class PoolSession : public RenderSession {
         if (path_count(context_.scene, unit) == 0) return {};
         RenderReport report = run(unit);
         for (std::size_t thread = 0; thread < report.threads.size(); ++thread) {  // added up by their number
-            const std::vector<RoundWork>& logged = rounds(thread);
-            if (logged.size() > report.rounds.size()) report.rounds.resize(logged.size());
-            for (std::size_t i = 0; i < logged.size(); ++i) report.rounds[i].add(logged[i]);
+            add_each<RoundWork>(report.rounds, rounds(thread));
+            add_each<ListLevel>(report.lists, lists(thread));
         }
         return report;
     }

@@ -159,6 +159,12 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
         work.wait_s = waited_s_;
         audit = converter_.audit();
     }
+    [[nodiscard]] std::span<const ListLevel> lists() const override {
+        if constexpr (requires { work_.lists; })
+            return work_.lists;
+        else
+            return {};
+    }
 
   private:
     static constexpr std::size_t kMostDeposits = 1024;  ///< kept back in the fused camera stage; fits into the L1 cache

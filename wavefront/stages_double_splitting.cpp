@@ -3,6 +3,6 @@
 namespace raypool::wavefront {
 
 template StagesMaker<record_needs(kEverything), double>
-stages_maker<kEverything, WideReal<double>, WorkCount, Splitting::On>();
+stages_maker<kEverything, WideReal<double>, ListCount, Splitting::On>();
 
 }  // namespace raypool::wavefront

@@ -3,6 +3,6 @@
 namespace raypool::wavefront {
 
 template StagesMaker<record_needs(kEverything), float>
-stages_maker<kEverything, WideReal<float>, WorkCount, Splitting::On>();
+stages_maker<kEverything, WideReal<float>, ListCount, Splitting::On>();
 
 }  // namespace raypool::wavefront

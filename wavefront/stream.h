@@ -64,6 +64,7 @@ class StreamWalk {
     using Row = RayRow<S>;
     static constexpr int kRays = kLanes<Real>;
     static constexpr int kWidth = kTreeWidth<S>;
+    static constexpr bool kCountsLists = requires(Work work) { work.count_list(1, 1, true); };
     static constexpr std::int32_t kLargestId = std::numeric_limits<std::int32_t>::max();
 
   public:
@@ -75,7 +76,9 @@ class StreamWalk {
 
     /// Takes list[0 .. count), which has room for a register beyond its end; `free` is scratch behind it.
     void visit(std::int32_t child, std::uint32_t* list, std::size_t count, std::uint32_t* free) {
-        if (count < kShortList) {
+        const bool is_single = count < kShortList;
+        if constexpr (kCountsLists) work_.count_list(count, kRays, is_single);
+        if (is_single) {
             for (std::size_t i = 0; i < count; ++i) walk_single(child, list[i]);
             return;
         }
@@ -130,11 +133,13 @@ class StreamWalk {
             for (; k > 0 && place[order[k - 1]] > place[i]; --k) order[k] = order[k - 1];
             order[k] = i;
         }
+        if constexpr (kCountsLists) ++work_.level;
         for (const int i : order) {
             std::uint32_t* const begin = free + static_cast<std::size_t>(i) * room;
             if (end[i] != begin)
                 visit(node.child[i], begin, static_cast<std::size_t>(end[i] - begin), free + kWidth * room);
         }
+        if constexpr (kCountsLists) --work_.level;
     }
 
     template <class Block>

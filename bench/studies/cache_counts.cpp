@@ -141,7 +141,8 @@ Cachegrind run_cachegrind(const std::vector<std::string>& arguments) {
     };
     const json found = read_json(stats);
     if (!found.is_object()) throw std::runtime_error("valgrind --tool=cachegrind: the command wrote no statistics");
-    return {read(is_engine), read(is_adding), found.at("hash").get<std::string>()};
+    return {read(is_engine), read(is_adding), read([](const std::string&) { return true; }),
+            found.at("segments").get<std::int64_t>(), found.at("hash").get<std::string>()};
 }
 
 }  // namespace raypool::studies

@@ -22,27 +22,27 @@ fs::path generator() {
     return fs::exists(installed) ? installed : fs::path(RAYPOOL_SOURCE_SCENES) / "generate";
 }
 
-struct TemporaryFile {
-    explicit TemporaryFile(const std::string& name)
-        : path(fs::temp_directory_path() / fmt::format("raypool-{}-{}", getpid(), name)) {}
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    ~TemporaryFile() {
-        std::error_code ignored;
-        fs::remove(path, ignored);
-    }
-    fs::path path;
-};
-
 }  // namespace
 
-Scene generated_scene(const std::string& kind, std::int64_t shapes) {
-    const TemporaryFile file(fmt::format("{}-{}.json", shapes, kind));
-    if (run_process({"/usr/bin/python3", "-B", generator().string(), std::to_string(shapes), kind, "-o",
-                     file.path.string()}) != 0)
-        throw std::runtime_error(fmt::format("{} could not make {} {}", generator().string(), shapes, kind));
-    Scene scene = read_scene(file.path);
-    scene.name = fmt::format("{} {}", shapes, kind);
+GeneratedScene::GeneratedScene(const std::string& kind, std::int64_t shapes)
+    : name_(fmt::format("{} {}", shapes, kind)),
+      path_(fs::temp_directory_path() / fmt::format("raypool-{}-{}-{}.json", getpid(), shapes, kind)) {
+    if (run_process({"/usr/bin/python3", "-B", generator().string(), std::to_string(shapes), kind, "-o", path_.string()}) ==
+        0)
+        return;
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+    throw std::runtime_error(fmt::format("{} could not make {}", generator().string(), name_));
+}
+
+GeneratedScene::~GeneratedScene() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+}
+
+Scene GeneratedScene::read() const {
+    Scene scene = read_scene(path_);
+    scene.name = name_;
     return scene;
 }
 

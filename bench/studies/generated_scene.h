@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,21 @@ namespace raypool::studies {
 /// What scenes/generate knows how to strew.
 inline constexpr const char* kSceneKinds[] = {"spheres", "quads", "cluster"};
 
-/// Runs the script, which needs python3, and reads what it wrote; no file is left. `shapes` is in [1, 10^7]. Throws
+/// What the script wrote, which goes when this does. `shapes` is in [1, 10^7]. Needs python3; throws
 /// std::runtime_error where the script fails.
-Scene generated_scene(const std::string& kind, std::int64_t shapes);
+class GeneratedScene {
+  public:
+    GeneratedScene(const std::string& kind, std::int64_t shapes);
+    GeneratedScene(const GeneratedScene&) = delete;
+    GeneratedScene& operator=(const GeneratedScene&) = delete;
+    ~GeneratedScene();
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    [[nodiscard]] Scene read() const;
+
+  private:
+    std::string name_;
+    std::filesystem::path path_;
+};
 
 }  // namespace raypool::studies

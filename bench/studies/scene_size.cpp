@@ -29,7 +29,7 @@ class SizedScene {
     [[nodiscard]] std::int64_t shapes() const { return shapes_; }
     [[nodiscard]] const StudyScene& get() {
         if (!made_) {
-            Scene scene = generated_scene(kind_, shapes_);
+            Scene scene = GeneratedScene(kind_, shapes_).read();
             set_width(scene, width_);
             made_.emplace(StudyScene{scene.name, compile<float>(scene)});
         }
@@ -58,51 +58,115 @@ NamedEngine sized_engine(const SizedWay& way) {
     return {"pool", std::make_shared<wavefront::WavefrontEngine>(*way.pool)};
 }
 
-Row sized_row(const SizedWay& way, SizedScene& scene, const RenderSettings& settings, const Measured& measured,
-              const CacheCounts& counts) {
+/// What a row of counts says beside its render, all of it null where it was not counted: reads that missed the first-level
+/// and the last-level cache; lists of one level of the trees.
+struct Counted {
+    Value source = nullptr;
+    Value d1_read_misses = nullptr;
+    Value ll_read_misses = nullptr;
+    Value level = nullptr;
+    ListLevel lists = {};
+};
+
+Row sized_row(const std::string& name, const SizedWay& way, SizedScene& scene, const RenderSettings& settings,
+              const Measured& measured, const Counted& counted = {}) {
     const NamedEngine engine = sized_engine(way);
     const RenderReport& report = measured.report;
-    const auto or_null = [](const std::optional<std::int64_t>& count) {
-        return count ? Value(*count) : Value(nullptr);
-    };
+    const auto of_level = [&](std::int64_t count) { return counted.level.is_null() ? Value() : Value(count); };
     Row row = render_row(engine.name, *engine.engine, scene.get(), settings, measured);
     const Row more{scene.kind(),
                    scene.shapes(),
                    settings.depth,
-                   way.name,
-                   way.pool ? Value(report.pool_rays) : Value(nullptr),
+                   name,
+                   way.pool ? Value(report.pool_rays) : Value(),
                    wavefront::tree_bytes(scene.get().compiled),
                    report.segments(),
                    1e9 * report.seconds * settings.threads / static_cast<double>(report.segments()),
-                   or_null(counts.d1_read_misses),
-                   or_null(counts.ll_read_misses)};
+                   counted.source,
+                   counted.d1_read_misses,
+                   counted.ll_read_misses,
+                   counted.level,
+                   of_level(counted.lists.lists),
+                   of_level(counted.lists.rays),
+                   of_level(counted.lists.single_rays),
+                   of_level(counted.lists.lanes)};
     row.insert(row.end(), more.begin(), more.end());
     return row;
+}
+
+std::string case_id(const SizedScene& scene, const RenderSettings& settings, const std::string& what) {
+    return fmt::format("{} {}, depth {}: {}", scene.shapes(), scene.kind(), settings.depth, what);
 }
 
 Case sized_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, const RenderSettings& settings,
                 int repeats) {
     const auto run = [way, scene, settings]() -> std::vector<Row> {
         const StudyScene& made = scene->get();
-        return {sized_row(way, *scene, settings, measure(*sized_engine(way).engine, made, settings), {})};
+        return {sized_row(way.name, way, *scene, settings, measure(*sized_engine(way).engine, made, settings))};
     };
-    return {fmt::format("{} {}, depth {}: {}, {} threads", scene->shapes(), scene->kind(), settings.depth, way.name,
-                        settings.threads),
+    return {case_id(*scene, settings, fmt::format("{}, {} threads", way.name, settings.threads)),
             scene->image(settings), repeats, run};
 }
 
-/// Its time is not used: counting takes some.
-Case counted_case(SizedWay way, const std::shared_ptr<SizedScene>& scene, const RenderSettings& settings) {
-    const std::string id =
-        fmt::format("{} {}, depth {}: cache misses of {}", scene->shapes(), scene->kind(), settings.depth, way.name);
-    way.name = fmt::format("{}, {}", kCounted, way.name);
+/// Its time is not used, here and below: counting takes some.
+Case hardware_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, const RenderSettings& settings) {
     const auto run = [way, scene, settings]() -> std::vector<Row> {
         const StudyScene& made = scene->get();
         Measured measured;
-        const auto counts = count_by_hardware([&] { measured = measure(*sized_engine(way).engine, made, settings); });
-        return {sized_row(way, *scene, settings, measured, counts.value_or(CacheCounts{}))};
+        const auto found = count_by_hardware([&] { measured = measure(*sized_engine(way).engine, made, settings); });
+        const CacheCounts counts = found.value_or(CacheCounts{});
+        const auto or_null = [](const std::optional<std::int64_t>& count) { return count ? Value(*count) : Value(); };
+        return {sized_row(fmt::format("{}, {}", kCounted, way.name), way, *scene, settings, measured,
+                          {.source = "hardware counters",
+                           .d1_read_misses = or_null(counts.d1_read_misses),
+                           .ll_read_misses = or_null(counts.ll_read_misses)})};
     };
-    return {id, scene->image(settings), 1, run};
+    return {case_id(*scene, settings, fmt::format("cache misses of {}", way.name)), scene->image(settings), 1, run};
+}
+
+/// Misses of the samples behind the first so many, so that what is done once for a scene is in neither figure. Small
+/// images: a simulated cache is a hundred times slower.
+Case cachegrind_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, const RenderSettings& settings) {
+    const auto run = [way, scene, settings]() -> std::vector<Row> {
+        const StudyScene& made = scene->get();
+        const GeneratedScene file(scene->kind(), scene->shapes());
+        const auto count = [&](std::int64_t spp) {
+            std::vector<std::string> arguments{file.path().string(), fmt::format("--width={}", made.compiled.width),
+                                               fmt::format("--spp={}", spp), fmt::format("--depth={}", settings.depth),
+                                               fmt::format("--seed={}", settings.seed), "--threads=1"};
+            arguments.emplace_back(way.pool ? "--engine=wavefront" : "--engine=recursive");
+            if (way.pool && way.pool->capacity > 0)
+                arguments.push_back(fmt::format("--pool-rays={}", way.pool->capacity));
+            return run_cachegrind(arguments);
+        };
+        const Cachegrind first = count(1);
+        const Cachegrind all = count(settings.end_sample);
+        Measured measured = measure(*sized_engine(way).engine, made, settings);
+        if (measured.hash != all.hash) throw std::runtime_error("the image under cachegrind is another one");
+        measured.report.threads.front().segments = all.segments - first.segments;
+        return {sized_row(fmt::format("{}, {}", kCounted, way.name), way, *scene, settings, measured,
+                          {.source = "cachegrind",
+                           .d1_read_misses = *all.all.d1_read_misses - *first.all.d1_read_misses,
+                           .ll_read_misses = *all.all.ll_read_misses - *first.all.ll_read_misses})};
+    };
+    return {case_id(*scene, settings, fmt::format("cache misses of {}", way.name)), scene->image(settings), 1, run};
+}
+
+/// The lists of a pool, a row for each level of the trees.
+Case list_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, RenderSettings settings) {
+    settings.count_work = true;
+    const auto run = [way, scene, settings]() -> std::vector<Row> {
+        const StudyScene& made = scene->get();
+        const Measured measured = measure(*sized_engine(way).engine, made, settings);
+        std::vector<Row> rows;
+        for (const ListLevel& level : measured.report.lists) {
+            if (level.lists == 0) break;
+            rows.push_back(sized_row(fmt::format("{}, {}", kLists, way.name), way, *scene, settings, measured,
+                                     {.level = rows.size(), .lists = level}));
+        }
+        return rows;
+    };
+    return {case_id(*scene, settings, fmt::format("lists of {}", way.name)), scene->image(settings), 1, run};
 }
 
 class SceneSize : public Study {
@@ -117,13 +181,20 @@ class SceneSize : public Study {
                        {{"kind", ColumnType::Text, "what scenes/generate strewed: spheres, quads or a cluster"},
                         {"shapes", ColumnType::Count, "how many"},
                         {"depth", ColumnType::Count, "most segments of a path; 1: camera rays alone"},
-                        {"way", ColumnType::Text, "recursion, a capacity, automatic, or cache misses of one of these"},
+                        {"way", ColumnType::Text,
+                         "recursion, a capacity, automatic; cache misses or lists of one of these"},
                         {"capacity", ColumnType::Count, "records of the pool of each thread"},
                         {"tree_bytes", ColumnType::Count, "nodes and leaves of the scene's trees"},
                         {"segments", ColumnType::Count, "rays traced"},
                         {"ns_per_segment", ColumnType::Real, "nanoseconds of a thread for a segment"},
-                        {"d1_read_misses", ColumnType::Count, "counted by the processor: first-level cache"},
-                        {"ll_read_misses", ColumnType::Count, "counted by the processor: last-level cache"}});
+                        {"source", ColumnType::Text, "of misses: hardware counters, or cachegrind (a simulation)"},
+                        {"d1_read_misses", ColumnType::Count, "of the first-level cache, by all segments"},
+                        {"ll_read_misses", ColumnType::Count, "of the last-level cache; cachegrind's is the second level"},
+                        {"level", ColumnType::Count, "of the trees, the root's is 0"},
+                        {"lists", ColumnType::Count, "lists of rays at nodes and leaves of the level"},
+                        {"list_rays", ColumnType::Count, "rays in them"},
+                        {"single_rays", ColumnType::Count, "of these, in short lists: each went on alone, in no list"},
+                        {"lanes", ColumnType::Count, "of registers, for the other rays"}});
         return columns;
     }
 
@@ -137,7 +208,8 @@ class SceneSize : public Study {
         const int most = static_cast<int>(choose(options.threads, options.is_quick, 1, core_count()));
         const std::int64_t width = choose(options.width, options.is_quick, 96, 256);
         const std::vector<SizedWay> ways = all_ways(options.is_quick);
-        const bool can_count = count_by_hardware([] {}).has_value();
+        const bool has_counters = count_by_hardware([] {}).has_value();
+        const bool has_cachegrind = !has_counters && !options.is_quick && cachegrind_command().why.empty();
 
         std::vector<Case> cases;
         for (const char* kind : kSceneKinds) {
@@ -150,9 +222,17 @@ class SceneSize : public Study {
                         for (const SizedWay& way : ways) cases.push_back(sized_case(way, scene, settings, repeats));
                     }
                     settings.threads = 1;
-                    if (!can_count) continue;
-                    for (const SizedWay& way : ways) cases.push_back(counted_case(way, scene, settings));
+                    for (const SizedWay& way : ways) {
+                        if (has_counters) cases.push_back(hardware_case(way, scene, settings));
+                        // Camera rays go down in beams, and are in no list.
+                        if (way.pool && depth > 1) cases.push_back(list_case(way, scene, settings));
+                    }
                 }
+                if (!has_cachegrind || shapes > kMostSimulated) continue;
+                const auto small = std::make_shared<SizedScene>(kind, shapes, std::min(width, kSimulatedWidth));
+                RenderSettings few = settings;
+                few.end_sample = kSimulatedSpp;
+                for (const SizedWay& way : {ways[0], ways[1]}) cases.push_back(cachegrind_case(way, small, few));
             }
         }
         return cases;
@@ -163,6 +243,10 @@ class SceneSize : public Study {
     }
 
   private:
+    static constexpr std::int64_t kMostSimulated = 100'000;  ///< shapes
+    static constexpr std::int64_t kSimulatedWidth = 96;
+    static constexpr std::int64_t kSimulatedSpp = 5;
+
     static std::vector<std::int64_t> sizes(bool is_quick) {
         if (is_quick) return {100, 1000, 10'000};
         return {100, 1000, 10'000, 100'000, 1'000'000};

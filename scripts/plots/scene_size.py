@@ -7,7 +7,7 @@ BLUE, ORANGE, GREEN, RED, SKY, PINK, BLACK, YELLOW = COLOURS
 
 
 def timed(rows):
-    return [row for row in rows if not str(row["way"]).startswith("cache misses")]
+    return [row for row in rows if not str(row["way"]).startswith(("cache misses", "lists"))]
 
 
 def name_of(way):
@@ -62,4 +62,32 @@ def time(run, rows):
     return figure
 
 
-PICTURES = {"ratio": ratio, "time": time}
+SHORT_LIST = 12  # rays; kShortList of wavefront/stream.h
+
+
+def lists(run, rows):
+    rows = where(rows, way="lists, automatic")
+    kinds = distinct(rows, "kind")
+    figure, axes = plt.subplots(2, len(kinds), figsize=(4.2 * len(kinds) + 1.8, 7.0), sharex=True, sharey="row",
+                                squeeze=False)
+    for above, below, kind in zip(axes[0], axes[1], kinds):
+        for index, shapes in enumerate(distinct(where(rows, kind=kind), "shapes")):
+            here = where(rows, kind=kind, shapes=shapes)
+            lengths = [row["list_rays"] / row["lists"] for row in here]
+            line(above, [row["level"] for row in here], [(value, value, value) for value in lengths], index=index,
+                 label=f"{shapes:.0f} shapes")
+            full = [row for row in here if row["lanes"] > 0]
+            fills = [(row["list_rays"] - row["single_rays"]) / row["lanes"] for row in full]
+            line(below, [row["level"] for row in full], [(value, value, value) for value in fills], index=index)
+        above.axhspan(0.5, SHORT_LIST, color="0.9")
+        above.set_yscale("log")
+        above.set_title(kind)
+        below.set_ylim(0, 1.05)
+        below.set_xlabel("level of the trees")
+    axes[0][0].set_ylabel("rays of a list")
+    axes[1][0].set_ylabel("lanes in use")
+    axes[0][-1].legend(loc="upper left", bbox_to_anchor=(1, 1))
+    return figure
+
+
+PICTURES = {"ratio": ratio, "time": time, "lists": lists}

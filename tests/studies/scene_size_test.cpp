@@ -1,10 +1,13 @@
 // What the study `scene-size` says of figures that are known.
 
+#include <map>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "bench/studies/registry.h"
 #include "bench/studies/scene_size_summary.h"
+#include "core/engine.h"
 
 namespace raypool::studies {
 namespace {
@@ -14,8 +17,9 @@ class SizedData {
   public:
     SizedData() : study_(make_study("scene-size")), table_(columns()) {}
 
-    void add(std::int64_t shapes, const std::string& way, const Value& capacity, double rate) {
-        for (int repeat = 0; repeat < 5; ++repeat) {
+    void add(std::int64_t shapes, const std::string& way, const Value& capacity, double rate, int repeats = 5,
+             const std::map<std::string, Value>& more = {}) {
+        for (int repeat = 0; repeat < repeats; ++repeat) {
             Row row(table_.columns().size(), nullptr);
             const auto set = [&](const char* column, const Value& value) { row[table_.index(column)] = value; };
             set("case", std::to_string(shapes) + way);
@@ -30,8 +34,18 @@ class SizedData {
             set("segments", 1000);
             set("mpaths_per_s", rate * (1 + 0.01 * repeat));
             set("ns_per_segment", 100.0);
+            for (const auto& [column, value] : more) set(column.c_str(), value);
             table_.add(std::move(row));
         }
+    }
+    /// Of the automatic pool, with 1000 segments in all.
+    void add_level(std::int64_t shapes, std::int64_t level, const ListLevel& lists) {
+        add(shapes, "lists, automatic", 8192, 1, 1,
+            {{"level", level},
+             {"lists", lists.lists},
+             {"list_rays", lists.rays},
+             {"single_rays", lists.single_rays},
+             {"lanes", lists.lanes}});
     }
     [[nodiscard]] Summary summary() const { return study_->summarise(table_, {}); }
 
@@ -89,9 +103,22 @@ TEST(SceneSize, JudgesTheDefaultPoolWhereItLeadsLeast) {
 TEST(SceneSize, TellsCacheMissesOnlyWhereTheyWereCounted) {
     SizedData data = two_sizes(2.1);
     EXPECT_EQ(data.summary().tables.size(), 1U);
-    data.add(1000, "cache misses, recursion", nullptr, 1);
+    data.add(1000, "cache misses, recursion", nullptr, 1, 1, {{"source", "cachegrind"}});
     EXPECT_EQ(data.summary().tables.size(), 2U);
-    EXPECT_THAT(data.summary().tables.back().rows[0], testing::ElementsAre("1000 spheres", "recursion", "", ""));
+    EXPECT_THAT(data.summary().tables.back().rows[0],
+                testing::ElementsAre("1000 spheres", "recursion", "", "", "cachegrind"));
+}
+
+TEST(SceneSize, TellsHowLongListsAreAndHowFullTheirRegistersByLevel) {
+    SizedData data = two_sizes(2.1);
+    data.add_level(1000, 0, {.lists = 2, .rays = 1000, .single_rays = 0, .lanes = 1008});
+    data.add_level(1000, 1, {.lists = 40, .rays = 800, .single_rays = 200, .lanes = 800});
+    data.add_level(1000, 2, {.lists = 10, .rays = 50, .single_rays = 50, .lanes = 0});
+    const TextTable table = data.summary().tables.back();
+    EXPECT_THAT(table.rows, testing::ElementsAre(
+                                testing::ElementsAre("1000 spheres", "0", "500.0", "99 %", "1.000", "0 %"),
+                                testing::ElementsAre("1000 spheres", "1", "20.0", "75 %", "0.800", "25 %"),
+                                testing::ElementsAre("1000 spheres", "2", "5.0", "", "0.050", "100 %")));
 }
 
 }  // namespace

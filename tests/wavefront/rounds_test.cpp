@@ -115,6 +115,39 @@ TEST_P(Report, CountsTheTestsOfRecursionWhereRaysAreTracedOneByOne) {
     EXPECT_GE(in_streams.report.total(&ThreadWork::primitive_tests), in_streams.report.segments() / 2);
 }
 
+TEST_P(Report, CountsTheListsOfEachLevel) {
+    const CompiledScene<float> scene = compile<float>(small_scene(GetParam(), 24));
+    PoolSettings pool;
+    pool.capacity = 300;
+    for (const int split_depth : {0, 2}) {
+        RenderSettings settings = settings_of(2, 50, 2);
+        settings.split_depth = split_depth;
+        const RenderReport report = render_pool(scene, settings, pool).report;
+        const std::vector<ListLevel>& lists = report.lists;
+        ASSERT_FALSE(lists.empty());
+        // Camera rays go down in beams; any other ray begins at the root of each tree.
+        const std::int64_t trees = (scene.sphere_tree.nodes.empty() ? 0 : 1) + (scene.quad_tree.nodes.empty() ? 0 : 1);
+        EXPECT_EQ(lists[0].rays, trees * (report.segments() - report.paths()));
+        std::int64_t entered = 0;
+        for (std::size_t level = 0; level < lists.size(); ++level) {
+            const ListLevel& at = lists[level];
+            const std::int64_t together = at.rays - at.single_rays;
+            EXPECT_GE(at.single_rays, 0);
+            EXPECT_GE(together, 0);
+            EXPECT_GE(at.lanes, together);
+            EXPECT_LT(at.lanes, together + 16 * std::max<std::int64_t>(at.lists, 1));
+            EXPECT_LE(at.lists, at.rays);
+            if (level == 0) continue;
+            entered += at.rays;
+            EXPECT_LE(at.rays, 8 * (lists[level - 1].rays - lists[level - 1].single_rays));
+        }
+        EXPECT_GT(entered, 0);
+        EXPECT_LE(entered, report.total(&ThreadWork::box_tests));
+    }
+    for (const ListLevel& level : render_pool(scene, settings_of(1, 50), shared_pool(300)).report.lists)
+        EXPECT_EQ(level.lists, 0) << "of rays that are traced one by one";
+}
+
 TEST_P(Report, ShowsTheRoundsOfAPoolThatTakesAllPathsAtOnceAsTheBouncesOfAllPaths) {
     const CompiledScene<float> scene = compile<float>(small_scene(GetParam(), 24));
     const Rendered got = render_pool(scene, settings_of(2, 50, 2), shared_pool(2 * scene.pixel_count()));
