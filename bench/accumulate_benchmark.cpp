@@ -1,6 +1,6 @@
 // How radiance reaches the framebuffer.
 //   accumulate/...   every kind of accumulator, where threads have pixels of their own and where all add to the same
-//   few framebuffer/...  the deposits of a real render, to sums that lie side by side (r, g, b, r, g, b, ...) or in
+//   few framebuffer/...  the contributions of a real render, to sums that lie side by side (r, g, b, r, g, b, ...) or in
 //   three
 //                    planes, in the order of the pixels and in the order in which a shared pool ends its paths
 
@@ -22,7 +22,7 @@ namespace {
 using namespace wavefront;
 using AnyAccumulator = AccumulatorBase<float>;
 
-constexpr std::size_t kDepositBytes = 3 * sizeof(float) + sizeof(std::uint32_t);
+constexpr std::size_t kContributionBytes = 3 * sizeof(float) + sizeof(std::uint32_t);
 constexpr std::size_t kSumBytes = 3 * sizeof(std::int64_t);
 
 struct Kind {
@@ -46,18 +46,18 @@ Framebuffer empty_framebuffer() {
 }
 
 /// A sample that ended.
-struct Deposit {
+struct Contribution {
     std::uint32_t pixel;
     Vec3<float> radiance;
 };
 
-/// Deposits in the batches in which stages hand them on.
-std::vector<Deposits<float>> batches(const std::vector<Deposit>& deposits) {
+/// Contributions in the batches in which stages hand them on.
+std::vector<Contributions<float>> batches(const std::vector<Contribution>& contributions) {
     constexpr std::size_t kBatch = 1024;
-    std::vector<Deposits<float>> all((deposits.size() + kBatch - 1) / kBatch);
-    for (Deposits<float>& batch : all) batch.reserve(kBatch);
-    for (std::size_t i = 0; i < deposits.size(); ++i)
-        all[i / kBatch].put<float>(deposits[i].pixel, deposits[i].radiance, 1);
+    std::vector<Contributions<float>> all((contributions.size() + kBatch - 1) / kBatch);
+    for (Contributions<float>& batch : all) batch.reserve(kBatch);
+    for (std::size_t i = 0; i < contributions.size(); ++i)
+        all[i / kBatch].put<float>(contributions[i].pixel, contributions[i].radiance, 1);
     return all;
 }
 
@@ -66,36 +66,36 @@ std::vector<Deposits<float>> batches(const std::vector<Deposit>& deposits) {
 enum class Pixels { Own, Same };
 
 /// What each of `threads` threads adds: anywhere in its part of the image, or to the same eight pixels.
-std::vector<std::vector<Deposits<float>>> deposits_of_threads(Pixels pixels, int threads) {
-    constexpr std::size_t kDeposits = 65536;
+std::vector<std::vector<Contributions<float>>> contributions_of_threads(Pixels pixels, int threads) {
+    constexpr std::size_t kContributions = 65536;
     const auto image = static_cast<std::uint32_t>(paper_scene().pixel_count());
     const std::uint32_t part = pixels == Pixels::Own ? image / static_cast<std::uint32_t>(threads) : 8;
-    std::vector<std::vector<Deposits<float>>> all;
+    std::vector<std::vector<Contributions<float>>> all;
     for (int thread = 0; thread < threads; ++thread) {
         std::mt19937 random(static_cast<unsigned>(thread));
         std::uniform_real_distribution<float> unit(0, 1);
         const std::uint32_t first = pixels == Pixels::Own ? static_cast<std::uint32_t>(thread) * part : image / 2;
-        std::vector<Deposit> deposits(kDeposits);
-        for (Deposit& deposit : deposits)
-            deposit = {first + static_cast<std::uint32_t>(random() % part),
+        std::vector<Contribution> contributions(kContributions);
+        for (Contribution& contribution : contributions)
+            contribution = {first + static_cast<std::uint32_t>(random() % part),
                        vec3<float>(unit(random), unit(random), unit(random))};
-        all.push_back(batches(deposits));
+        all.push_back(batches(contributions));
     }
     return all;
 }
 
-void add_all(AnyAccumulator& accumulator, const std::vector<std::vector<Deposits<float>>>& deposits,
+void add_all(AnyAccumulator& accumulator, const std::vector<std::vector<Contributions<float>>>& contributions,
              const FixedPoint& fixed) {
-#pragma omp parallel num_threads(static_cast <int>(deposits.size()))
+#pragma omp parallel num_threads(static_cast <int>(contributions.size()))
     {
         const int thread = omp_get_thread_num();
         SampleConverter converter(fixed);
-        for (const Deposits<float>& batch : deposits[static_cast<std::size_t>(thread)])
+        for (const Contributions<float>& batch : contributions[static_cast<std::size_t>(thread)])
             accumulator.add(batch, converter, thread);
     }
 }
 
-/// The same sums as when one thread adds one deposit after the other; where they round, within one in a hundred.
+/// The same sums as when one thread adds one contribution after the other; where they round, within one in a hundred.
 bool sums_agree(const Framebuffer& sums, const Framebuffer& expected, bool is_exact) {
     if (is_exact) return sums.hash() == expected.hash();
     return std::equal(sums.sums().begin(), sums.sums().end(), expected.sums().begin(),
@@ -104,15 +104,15 @@ bool sums_agree(const Framebuffer& sums, const Framebuffer& expected, bool is_ex
 
 void accumulate(benchmark::State& state, const Kind& kind, Pixels pixels) {
     const auto threads = static_cast<int>(state.range(0));
-    const auto deposits = deposits_of_threads(pixels, threads);
+    const auto contributions = contributions_of_threads(pixels, threads);
     Framebuffer framebuffer = empty_framebuffer();
     Framebuffer expected = empty_framebuffer();
     auto accumulator = make_accumulator<float>(kind.accumulator, framebuffer, threads);
-    add_all(*accumulator, deposits, framebuffer.fixed_point());
+    add_all(*accumulator, contributions, framebuffer.fixed_point());
     merge_all(*accumulator);
-    for (const auto& of_thread : deposits) {
+    for (const auto& of_thread : contributions) {
         SampleConverter converter(expected.fixed_point());
-        for (const Deposits<float>& batch : of_thread)
+        for (const Contributions<float>& batch : of_thread)
             for (std::size_t i = 0; i < batch.count(); ++i)
                 expected.add(batch.pixel(i), converter.convert<float>(batch.radiance(i)));
     }
@@ -120,31 +120,31 @@ void accumulate(benchmark::State& state, const Kind& kind, Pixels pixels) {
 
     // What merge() does once at the end of a render is not timed.
     accumulator = make_accumulator<float>(kind.accumulator, framebuffer, threads);
-    for (auto _ : state) add_all(*accumulator, deposits, framebuffer.fixed_point());
+    for (auto _ : state) add_all(*accumulator, contributions, framebuffer.fixed_point());
     std::size_t count = 0;
-    for (const auto& of_thread : deposits)
-        for (const Deposits<float>& batch : of_thread) count += batch.count();
+    for (const auto& of_thread : contributions)
+        for (const Contributions<float>& batch : of_thread) count += batch.count();
     const double own_bytes = static_cast<double>(accumulator_bytes(kind.accumulator, framebuffer, threads)) /
                              static_cast<double>(paper_scene().pixel_count());
-    count_rays(state, static_cast<std::int64_t>(count), kDepositBytes + (own_bytes > 0 ? own_bytes : kSumBytes));
+    count_rays(state, static_cast<std::int64_t>(count), kContributionBytes + (own_bytes > 0 ? own_bytes : kSumBytes));
 }
 
 // Layouts of the framebuffer.
 
-/// Writes down the deposits in their order.
+/// Writes down the contributions in their order.
 class Recorder : public AnyAccumulator {
   public:
-    void add(const Deposits<float>& deposits, SampleConverter&, int) override {
-        for (std::size_t i = 0; i < deposits.count(); ++i) all_.push_back({deposits.pixel(i), deposits.radiance(i)});
+    void add(const Contributions<float>& contributions, SampleConverter&, int) override {
+        for (std::size_t i = 0; i < contributions.count(); ++i) all_.push_back({contributions.pixel(i), contributions.radiance(i)});
     }
-    std::vector<Deposit>& all() { return all_; }
+    std::vector<Contribution>& all() { return all_; }
 
   private:
-    std::vector<Deposit> all_;
+    std::vector<Contribution> all_;
 };
 
 /// The samples of an image in the order in which the paper's pool ends them.
-std::vector<Deposit> pool_order() {
+std::vector<Contribution> pool_order() {
     constexpr PoolSettings kPool{.scope = PoolScope::Shared, .refill = Refill::Drain, .camera = CameraStage::Staged};
     RenderSettings settings;
     settings.end_sample = 4;
@@ -153,7 +153,7 @@ std::vector<Deposit> pool_order() {
         paper_scene(), settings, kPool, random_seed(settings.seed, settings.sampler), StageRig<float>::roomy(),
         &recorder};
     InPlacePool<kPaper, float> pool(PoolSettings::kSharedCapacity, static_cast<std::size_t>(kPool.batch), 0);
-    Stages<kPaper, Lanes, NoWorkCount, Splitting::Off> stages(context, pool.batch(), 0);
+    Stages<kPaper, Lanes, NoTestCount, Splitting::Off> stages(context, pool.batch(), 0);
     const CameraPaths image(RenderUnit{0, settings.end_sample, nullptr}, paper_scene().width, paper_scene().height);
     PathCounter camera(image.left());
     const FlushDenormals flush;
@@ -161,12 +161,12 @@ std::vector<Deposit> pool_order() {
         const bool takes_camera = pool.is_empty();
         for (std::int64_t b = 0; b < pool.batch_count(); ++b) {
             const std::size_t survivors = stages.advance(pool.records(), pool.first(b), pool.count(b));
-            std::size_t end = stages.pass_on(pool, b, pool.first(b), survivors);
-            for (std::size_t room = takes_camera ? pool.room(b) : 0; room > 0;) {
-                const PathCounter::Part part = camera.take(std::min(room, kCameraChunk));
+            std::size_t end = stages.enqueue(pool, b, pool.first(b), survivors);
+            for (std::size_t free_slots = takes_camera ? pool.free_slots(b) : 0; free_slots > 0;) {
+                const PathCounter::Part part = camera.take(std::min(free_slots, kCameraChunk));
                 if (part.count == 0) break;
-                room -= static_cast<std::size_t>(part.count);
-                end = stages.pass_on(pool, b, end,
+                free_slots -= static_cast<std::size_t>(part.count);
+                end = stages.enqueue(pool, b, end,
                                      stages.generate(pool.records(), end, image.part(part.begin, part.count)));
             }
         }
@@ -177,16 +177,16 @@ std::vector<Deposit> pool_order() {
 
 enum class Order { Pixels, Pool };
 
-const std::vector<Deposits<float>>& deposits_in(Order order) {
+const std::vector<Contributions<float>>& contributions_in(Order order) {
     const auto make = [](bool is_sorted) {
-        std::vector<Deposit> deposits = pool_order();
+        std::vector<Contribution> contributions = pool_order();
         if (is_sorted)
-            std::stable_sort(deposits.begin(), deposits.end(),
-                             [](const Deposit& a, const Deposit& b) { return a.pixel < b.pixel; });
-        return batches(deposits);
+            std::stable_sort(contributions.begin(), contributions.end(),
+                             [](const Contribution& a, const Contribution& b) { return a.pixel < b.pixel; });
+        return batches(contributions);
     };
-    static const std::vector<Deposits<float>> in_pixel_order = make(true);
-    static const std::vector<Deposits<float>> in_pool_order = make(false);
+    static const std::vector<Contributions<float>> in_pixel_order = make(true);
+    static const std::vector<Contributions<float>> in_pool_order = make(false);
     return order == Order::Pixels ? in_pixel_order : in_pool_order;
 }
 
@@ -196,28 +196,28 @@ struct Layout {
 };
 constexpr Layout kLayouts[] = {{"interleaved", Accumulator::OwnedInt64}, {"planar", Accumulator::OwnedPlanarInt64}};
 
-std::string hash_of(const Layout& layout, const std::vector<Deposits<float>>& deposits) {
+std::string hash_of(const Layout& layout, const std::vector<Contributions<float>>& contributions) {
     Framebuffer framebuffer = empty_framebuffer();
     const auto accumulator = make_accumulator<float>(layout.accumulator, framebuffer, 1);
     SampleConverter converter(framebuffer.fixed_point());
-    for (const Deposits<float>& batch : deposits) accumulator->add(batch, converter, 0);
+    for (const Contributions<float>& batch : contributions) accumulator->add(batch, converter, 0);
     merge_all(*accumulator);
     return framebuffer.hash();
 }
 
 void fill_framebuffer(benchmark::State& state, const Layout& layout, Order order) {
-    const std::vector<Deposits<float>>& deposits = deposits_in(order);
-    if (!agree(state, hash_of(layout, deposits) == hash_of(kLayouts[0], deposits_in(Order::Pixels)),
+    const std::vector<Contributions<float>>& contributions = contributions_in(order);
+    if (!agree(state, hash_of(layout, contributions) == hash_of(kLayouts[0], contributions_in(Order::Pixels)),
                "the sums differ from the interleaved ones in pixel order"))
         return;
     Framebuffer framebuffer = empty_framebuffer();
     const auto accumulator = make_accumulator<float>(layout.accumulator, framebuffer, 1);
     SampleConverter converter(framebuffer.fixed_point());
     for (auto _ : state)
-        for (const Deposits<float>& batch : deposits) accumulator->add(batch, converter, 0);
+        for (const Contributions<float>& batch : contributions) accumulator->add(batch, converter, 0);
     std::size_t count = 0;
-    for (const Deposits<float>& batch : deposits) count += batch.count();
-    count_rays(state, static_cast<std::int64_t>(count), kDepositBytes + kSumBytes);
+    for (const Contributions<float>& batch : contributions) count += batch.count();
+    count_rays(state, static_cast<std::int64_t>(count), kContributionBytes + kSumBytes);
 }
 
 }  // namespace

@@ -51,14 +51,14 @@ void round(Pool& pool, int threads, Visit visit) {
     }
 }
 
-/// Fills what room there is with new records.
+/// Fills the free slots with new records.
 void refill(Pool& pool, int threads, std::atomic<std::uint32_t>& next_serial) {
     round(pool, threads, [&](std::int64_t b) {
-        std::size_t end = pool.keep(b, pool.first(b), pool.count(b), kNoOverflow, 0);
-        const std::size_t room = pool.room(b);
-        for (std::size_t i = 0; i < room; ++i)
-            pool.records().append<float>(end + i, numbered(next_serial++), 1, end + room);
-        pool.keep(b, end, room, kNoOverflow, 0);
+        std::size_t end = pool.enqueue(b, pool.first(b), pool.count(b), kNoOverflow, 0);
+        const std::size_t free_slots = pool.free_slots(b);
+        for (std::size_t i = 0; i < free_slots; ++i)
+            pool.records().append<float>(end + i, numbered(next_serial++), 1, end + free_slots);
+        pool.enqueue(b, end, free_slots, kNoOverflow, 0);
     });
 }
 
@@ -75,7 +75,7 @@ void survive(Pool& pool, int threads) {
             pool.records().append<Lanes>(first + kept, record, alive, first + count);
             kept += static_cast<std::size_t>(std::popcount(alive));
         }
-        pool.keep(b, first, kept, kNoOverflow, 0);
+        pool.enqueue(b, first, kept, kNoOverflow, 0);
     });
 }
 

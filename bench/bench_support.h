@@ -14,7 +14,7 @@
 #include <omp.h>
 #include <nlohmann/json.hpp>
 
-#include "core/environment.h"
+#include "core/runtime/environment.h"
 
 namespace raypool {
 
@@ -67,7 +67,7 @@ inline bool agree(benchmark::State& state, bool is_same, const char* what_differ
     return is_same;
 }
 
-/// The counters of a row: rays (or deposits) that an iteration treats, and the bytes that hold one of them in what the
+/// The counters of a row: rays (or contributions) that an iteration treats, and the bytes that hold one of them in what the
 /// row works on.
 inline void count_rays(benchmark::State& state, std::int64_t rays, double bytes) {
     state.counters["rays/s"] =

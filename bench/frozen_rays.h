@@ -25,7 +25,7 @@ inline constexpr int kFrozenBatches[] = {4096, 65536};  ///< as a thread works o
 template <class Real>
 class StageRig {
   public:
-    using Stages = wavefront::Stages<kPaper, Real, NoWorkCount, Splitting::Off>;
+    using Stages = wavefront::Stages<kPaper, Real, NoTestCount, Splitting::Off>;
 
     StageRig(const wavefront::PoolSettings& pool, std::size_t most_records)
         : pool_(pool),

@@ -48,7 +48,7 @@ class Packets : public Contestant {
     }
     void intersect(const Records& records, std::size_t count) override {
         using Ids = stdx::rebind_simd_t<std::int32_t, Uint32<Lanes>>;
-        NoWorkCount work;
+        NoTestCount work;
         for (std::size_t i = 0; i < count; i += kLanes<Lanes>) {
             const RayRecord<Lanes> record = records.load<Lanes>(i);
             const auto hit = closest_hits<kPaper, Lanes>(paper_scene(), wide_rays<Lanes>(record.ray, record.leaving_id),

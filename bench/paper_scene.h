@@ -1,20 +1,20 @@
 /// The scene that the benchmarks work on, `paper`, and the number types that the engines compile for it.
 #pragma once
 
-#include "core/compiled_scene.h"
-#include "core/error.h"
-#include "core/scene_reader.h"
+#include "core/shading/compiled_scene.h"
+#include "core/base/error.h"
+#include "core/scene/scene_reader.h"
 
 namespace raypool {
 
-inline constexpr SceneNeeds kPaper = kCompiledNeeds[1];
+inline constexpr Features kPaper = kCompiledFeatures[1];
 /// A register of rays.
 using Lanes = Wide<float, stdx::native_simd<float>::size()>;
 
 inline const CompiledScene<float>& paper_scene() {
     static const CompiledScene<float> scene = [] {
         CompiledScene<float> compiled = compile<float>(builtin_scene("paper"));
-        RAYPOOL_CHECK(kCompiledNeeds[compiled_needs_index(compiled.needs)] == kPaper, "the engines run other code");
+        RAYPOOL_CHECK(kCompiledFeatures[compiled_features_index(compiled.features)] == kPaper, "the engines run other code");
         return compiled;
     }();
     return scene;

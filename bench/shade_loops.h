@@ -1,12 +1,12 @@
-/// Shading alone: scatter() of core/shade.h over columns, one ray at a time, or a register at a time.
+/// Shading alone: scatter() of core/shading/shade.h over columns, one ray at a time, or a register at a time.
 ///
 /// shade_at() is the body of all the loops, so the loops differ in nothing but their width. The loop that is left to
 /// the compiler is in shade_loop_omp_simd.cpp, which is compiled with flags of its own.
 #pragma once
 
 #include "bench/paper_scene.h"
-#include "core/random.h"
-#include "core/shade.h"
+#include "core/math/random.h"
+#include "core/shading/shade.h"
 
 namespace raypool {
 

@@ -14,7 +14,7 @@ namespace {
 using namespace wavefront;
 
 constexpr std::size_t kHitBytes = sizeof(float) + sizeof(std::int32_t);
-constexpr std::size_t kDepositBytes = 3 * sizeof(float) + sizeof(std::uint32_t);
+constexpr std::size_t kContributionBytes = 3 * sizeof(float) + sizeof(std::uint32_t);
 constexpr PoolSettings kSorted{.sort = Sort::Material};
 
 /// A batch that stages may change, and its frozen original.
@@ -121,15 +121,15 @@ void time_stage(benchmark::State& state, Stage stage, const RayKind& kind, std::
             stages.accumulate();
         };
         time_prepared(state, restore, [&] { stages.shade(batch.records(), 0, count); });
-        count_rays(state, rays, records_bytes + kHitBytes + kDepositBytes);
+        count_rays(state, rays, records_bytes + kHitBytes + kContributionBytes);
     } else {
         const auto shade = [&] {
             batch.restore();
             stages.shade(batch.records(), 0, count);
-            rays = static_cast<std::int64_t>(stages.deposit_count());
+            rays = static_cast<std::int64_t>(stages.contribution_count());
         };
         time_prepared(state, shade, [&] { stages.accumulate(); });
-        count_rays(state, rays, kDepositBytes + 3 * sizeof(std::int64_t));
+        count_rays(state, rays, kContributionBytes + 3 * sizeof(std::int64_t));
     }
 }
 

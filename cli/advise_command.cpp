@@ -12,12 +12,12 @@
 #include "cli/options.h"
 #include "cli/print.h"
 #include "cli/progress_bar.h"
-#include "core/environment.h"
-#include "core/error.h"
-#include "core/json_file.h"
-#include "core/output_file.h"
-#include "core/scene_reader.h"
-#include "core/text.h"
+#include "core/runtime/environment.h"
+#include "core/base/error.h"
+#include "core/base/json_file.h"
+#include "core/base/output_file.h"
+#include "core/scene/scene_reader.h"
+#include "core/base/text.h"
 
 namespace raypool::cli {
 
@@ -60,8 +60,8 @@ void print_offer(const Offer& offer) {
 }
 
 void print_advice(const Advice& advice, const AdviseCommand& command, int threads) {
-    print("{}: needs {}\n", command.scene,
-          advice.needs.empty() ? "nothing" : fmt::format("{}", fmt::join(advice.needs, ", ")));
+    print("{}: features: {}\n", command.scene,
+          advice.features.empty() ? "nothing" : fmt::format("{}", fmt::join(advice.features, ", ")));
     print("tried at {} x {} with {} seeds, {} thread{}, and the best {} at {} x {}\n\n", advice.pilot_width,
           advice.pilot_height, advice.pilot_seeds, threads, threads == 1 ? "" : "s", advice.offers.size(), advice.width,
           advice.height);
@@ -107,7 +107,7 @@ nlohmann::json advice_json(const Advice& advice, const AdviseCommand& command, i
     if (command.target_time) target["seconds"] = *command.target_time;
     return {{"scene", command.scene},
             {"target", target},
-            {"needs", advice.needs},
+            {"features", advice.features},
             {"size", {advice.width, advice.height}},
             {"pilot_size", {advice.pilot_width, advice.pilot_height}},
             {"pilot_seeds", advice.pilot_seeds},

@@ -14,11 +14,11 @@
 #include "cli/options.h"
 #include "cli/pool_options.h"
 #include "cli/print.h"
-#include "core/environment.h"
-#include "core/error.h"
-#include "core/json_file.h"
-#include "core/output_file.h"
-#include "core/scene_reader.h"
+#include "core/runtime/environment.h"
+#include "core/base/error.h"
+#include "core/base/json_file.h"
+#include "core/base/output_file.h"
+#include "core/scene/scene_reader.h"
 #include "recursive/engine.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
@@ -111,7 +111,7 @@ std::vector<Contender> contenders(const Scene& scene, const CompiledScene<float>
 
 /// Balance of the segments that threads traced.
 double load_imbalance(const RenderReport& report) {
-    return studies::max_over_mean(studies::by_thread(report, &ThreadWork::segments));
+    return studies::max_over_mean(studies::by_thread(report, &ThreadReport::segments));
 }
 
 std::string run_once(Contender& contender, const CompiledScene<float>& scene, const RenderSettings& settings) {

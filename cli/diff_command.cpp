@@ -14,12 +14,12 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/print.h"
-#include "core/error.h"
-#include "core/image_diff.h"
-#include "core/image_file.h"
-#include "core/output_file.h"
-#include "core/settings_text.h"
-#include "core/tile_bias.h"
+#include "core/base/error.h"
+#include "core/image/image_diff.h"
+#include "core/image/image_file.h"
+#include "core/base/output_file.h"
+#include "core/runtime/settings_text.h"
+#include "core/image/tile_bias.h"
 
 namespace raypool::cli {
 

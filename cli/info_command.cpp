@@ -8,11 +8,11 @@
 
 #include "cli/commands.h"
 #include "cli/print.h"
-#include "core/compiled_scene.h"
-#include "core/environment.h"
-#include "core/light_range.h"
-#include "core/memory.h"
-#include "core/scene_reader.h"
+#include "core/shading/compiled_scene.h"
+#include "core/runtime/environment.h"
+#include "core/film/light_range.h"
+#include "core/base/memory.h"
+#include "core/scene/scene_reader.h"
 #include "wavefront/capacity.h"
 
 namespace raypool::cli {
@@ -60,8 +60,8 @@ void info(const std::string& name) {
     const Scene scene = load_scene(name);
     const Coincidence coincidence = find_coincidence<float>(scene);
     const CompiledScene<float> compiled = compile<float>(scene, coincidence);
-    const auto listed = [](const SceneNeeds& needs) {
-        const auto names = feature_names(needs);
+    const auto listed = [](const Features& features) {
+        const auto names = feature_names(features);
         return names.empty() ? std::string("nothing") : fmt::format("{}", fmt::join(names, ", "));
     };
     print("{}: {}\n", scene.name, scene.description);
@@ -69,18 +69,18 @@ void info(const std::string& name) {
     print("shapes: {} spheres, {} quads, {} planes; {} materials, {} textures\n", scene.spheres.size(),
           scene.quads.size(), scene.planes.size(), scene.materials.size(), scene.textures.size());
     print_hidden(scene, coincidence.is_hidden);
-    print("needs: {}\n", listed(compiled.needs));
+    print("features: {}\n", listed(compiled.features));
     const auto code = [&](std::size_t first) {
-        return listed(kCompiledNeeds[compiled_needs_index(compiled.needs, first)]);
+        return listed(kCompiledFeatures[compiled_features_index(compiled.features, first)]);
     };
-    print("runs on code compiled for: {}; in double: {}\n", code(kFirstCompiledNeeds<float>),
-          code(kFirstCompiledNeeds<double>));
+    print("runs on code compiled for: {}; in double: {}\n", code(kFirstCompiledFeatures<float>),
+          code(kFirstCompiledFeatures<double>));
     const CodeWidths widths = code_widths();
     print("which may use: {}; stages of {} rays in float, {} in double; trees {} and {} wide\n",
           fmt::format("{}", fmt::join(widths.instruction_sets, ", ")), widths.float_lanes, widths.double_lanes,
           widths.float_tree_width, widths.double_tree_width);
-    print("ray record: {} bytes in float, {} in double\n", ray_record_bytes(compiled.needs, sizeof(float)),
-          ray_record_bytes(compiled.needs, sizeof(double)));
+    print("ray record: {} bytes in float, {} in double\n", ray_record_bytes(compiled.features, sizeof(float)),
+          ray_record_bytes(compiled.features, sizeof(double)));
     print("tested before the trees: {} spheres, {} planes\n", filled_lanes(compiled.large_spheres),
           filled_lanes(compiled.planes));
     print_tree("sphere", compiled.sphere_tree);
@@ -99,7 +99,7 @@ void info(const std::string& name) {
 
 void add_info_command(CLI::App& app, int&) {
     auto scene = std::make_shared<std::string>("paper");
-    CLI::App* command = app.add_subcommand("info", "Say what a scene needs, and how its tables came out");
+    CLI::App* command = app.add_subcommand("info", "Say which features a scene uses, and how its tables came out");
     command->add_option("scene", *scene, "Scene file, or the name of a built-in scene (default: paper)");
     command->callback([scene] { info(*scene); });
 }

@@ -16,9 +16,9 @@
 #include "cli/print.h"
 #include "cluster/agreement.h"
 #include "cluster/ranks.h"
-#include "core/error.h"
-#include "core/memory.h"
-#include "core/text.h"
+#include "core/base/error.h"
+#include "core/base/memory.h"
+#include "core/base/text.h"
 
 namespace {
 

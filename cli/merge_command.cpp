@@ -11,11 +11,11 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/print.h"
-#include "core/error.h"
-#include "core/file_lock.h"
-#include "core/image_file.h"
-#include "core/output_file.h"
-#include "core/sums_file.h"
+#include "core/base/error.h"
+#include "core/base/file_lock.h"
+#include "core/image/image_file.h"
+#include "core/base/output_file.h"
+#include "core/film/checkpoint.h"
 
 namespace raypool::cli {
 
@@ -38,15 +38,15 @@ void with_name(const std::string& file, Work work) {
     }
 }
 
-RenderSums read_part(const std::string& file) {
-    RenderSums part = read_sums(file);
+Checkpoint read_part(const std::string& file) {
+    Checkpoint part = read_checkpoint(file);
     if (part.framebuffer.has_squares())
         throw InputError(fmt::format("{}: of an adaptive render, which has no parts", file));
     return part;
 }
 
 /// Adds a part to the sum of those before it.
-void add(RenderSums& sum, const RenderSums& part) {
+void add(Checkpoint& sum, const Checkpoint& part) {
     check_same_render(part, sum);
     sum.spp = std::max(sum.spp, part.spp);
     for (const SampleRange& range : part.ranges) sum.ranges = with_range(std::move(sum.ranges), range);
@@ -67,9 +67,9 @@ int merge(const MergeOptions& options) {
     if (!options.checkpoint.empty()) lock.emplace(options.checkpoint);
     if (std::filesystem::is_regular_file(options.checkpoint))
         throw InputError(fmt::format("{}: is there already; remove it, or name another file", options.checkpoint));
-    RenderSums sum = read_part(options.parts.front());
+    Checkpoint sum = read_part(options.parts.front());
     for (std::size_t i = 1; i < options.parts.size(); ++i) {
-        const RenderSums part = read_part(options.parts[i]);
+        const Checkpoint part = read_part(options.parts[i]);
         with_name(options.parts[i], [&] { add(sum, part); });
     }
 
@@ -79,7 +79,7 @@ int merge(const MergeOptions& options) {
         attributes["raypool.spp"] = fmt::to_string(sum.spp);
         write_image(options.output, sum.framebuffer.image(sum.sample_count()), attributes);
     }
-    if (!options.checkpoint.empty()) write_sums(options.checkpoint, sum);
+    if (!options.checkpoint.empty()) write_checkpoint(options.checkpoint, sum);
     const std::vector<SampleRange> missing = gaps(sum.ranges, sum.spp);
     for (const SampleRange& gap : missing)
         print(stderr, "raypool: samples {} to {} are missing (--samples {}:{})\n", gap.first, gap.end, gap.first,

@@ -11,9 +11,9 @@
 
 #include <fmt/format.h>
 
-#include "core/error.h"
-#include "core/output_file.h"
-#include "core/thread_limit.h"
+#include "core/base/error.h"
+#include "core/base/output_file.h"
+#include "core/base/thread_limit.h"
 
 namespace raypool::cli {
 

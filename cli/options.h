@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/settings_text.h"
-#include "core/sums_file.h"
+#include "core/runtime/settings_text.h"
+#include "core/film/checkpoint.h"
 
 namespace raypool::cli {
 
@@ -27,7 +27,7 @@ SampleRange parse_samples(std::string_view text, std::int64_t spp);
 std::uint64_t parse_seed(std::string_view text);
 
 /// Threads as asked for with --threads, or OMP_NUM_THREADS where `asked` is 0. Refuses more than OpenMP and the system
-/// would give (core/thread_limit.h). What follows in this thread, such as building trees, uses as many.
+/// would give (core/base/thread_limit.h). What follows in this thread, such as building trees, uses as many.
 int thread_count(int asked);
 
 using NamedFiles = std::vector<std::pair<std::string, std::string>>;

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/error.h"
-#include "core/settings_text.h"
+#include "core/base/error.h"
+#include "core/runtime/settings_text.h"
 #include "wavefront/setting_names.h"
 
 namespace raypool::cli {

@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "core/engine.h"
+#include "core/runtime/engine.h"
 
 namespace raypool::cli {
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/checkpoint.h"
+#include "cli/checkpoint_keeper.h"
 #include "cli/commands.h"
 #include "cli/option_rules.h"
 #include "cli/options.h"
@@ -20,16 +20,16 @@
 #include "cli/stats_json.h"
 #include "cli/stopwatch.h"
 #include "cluster/agreement.h"
-#include "core/cost_image.h"
-#include "core/environment.h"
-#include "core/error.h"
-#include "core/heat_map.h"
-#include "core/image_file.h"
-#include "core/json_file.h"
-#include "core/memory.h"
-#include "core/output_file.h"
-#include "core/scene_reader.h"
-#include "core/trace.h"
+#include "core/image/cost_image.h"
+#include "core/runtime/environment.h"
+#include "core/base/error.h"
+#include "core/image/heat_map.h"
+#include "core/image/image_file.h"
+#include "core/base/json_file.h"
+#include "core/base/memory.h"
+#include "core/base/output_file.h"
+#include "core/scene/scene_reader.h"
+#include "core/runtime/trace.h"
 #include "wavefront/setting_names.h"
 
 namespace raypool::cli {
@@ -107,9 +107,9 @@ void check_memory(const Scene& scene, const RenderOptions& options, const cluste
 /// Of the code that a scene runs on, which may be compiled for more than it needs.
 std::size_t stored_record_bytes(const Scene& scene, Precision precision) {
     const bool is_double = precision == Precision::Double;
-    const std::size_t first = is_double ? kFirstCompiledNeeds<double> : kFirstCompiledNeeds<float>;
-    const SceneNeeds& needs = kCompiledNeeds[compiled_needs_index(scene_needs(scene), first)];
-    return ray_record_bytes(needs, is_double ? sizeof(double) : sizeof(float));
+    const std::size_t first = is_double ? kFirstCompiledFeatures<double> : kFirstCompiledFeatures<float>;
+    const Features& features = kCompiledFeatures[compiled_features_index(scene_features(scene), first)];
+    return ray_record_bytes(features, is_double ? sizeof(double) : sizeof(float));
 }
 
 ImageAttributes image_attributes(const RenderRecord& record) {
@@ -222,7 +222,7 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
 
     if (ranks.count() > 1) cluster::agree(ranks, shared_terms(scene, record, given));
 
-    Checkpoint checkpoint(options.checkpoint, ranks);
+    CheckpointKeeper checkpoint(options.checkpoint, ranks);
     const Image image = render_image(scene, options.checkpoint, options.is_quiet, checkpoint, ranks, record);
     watch.lap();
     std::exception_ptr failure = checkpoint.failure();  // what cannot be written costs nothing else
@@ -242,7 +242,7 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     if (failure) std::rethrow_exception(failure);
 
     const int signal = checkpoint.stopped_by();
-    if (signal != 0 && ranks.is_first() && !Checkpoint::has_said_so())
+    if (signal != 0 && ranks.is_first() && !CheckpointKeeper::has_said_so())
         print(stderr,
               "raypool: stopped; {} holds {} samples a pixel: the same command with --resume goes on from there\n",
               options.checkpoint.file, record.samples_done);

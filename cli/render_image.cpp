@@ -11,9 +11,9 @@
 #include "cli/stopwatch.h"
 #include "cluster/exchange.h"
 #include "cluster/rank_engine.h"
-#include "core/light_range.h"
-#include "core/progressive.h"
-#include "core/scene_hash.h"
+#include "core/film/light_range.h"
+#include "core/runtime/progressive.h"
+#include "core/scene/scene_hash.h"
 #include "recursive/engine.h"
 #include "wavefront/engine.h"
 
@@ -35,7 +35,7 @@ std::unique_ptr<Engine> make_engine(const RenderRecord& record, cluster::Ranks& 
 /// Renders what `sums` lacks, and keeps checkpoints.
 template <class Scalar>
 RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& scene, const RenderRecord& record,
-                            RenderSums& sums, AdaptiveReport& adaptive, Checkpoint& checkpoint) {
+                            Checkpoint& sums, AdaptiveReport& adaptive, CheckpointKeeper& checkpoint) {
     if (record.target_error > 0) {
         std::vector<std::int32_t> counts = sums.sample_counts;
         if (counts.empty()) counts.resize(static_cast<std::size_t>(scene.pixel_count()));
@@ -77,16 +77,16 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
 }
 
 template <class Scalar>
-Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_quiet, Checkpoint& checkpoint,
+Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_quiet, CheckpointKeeper& checkpoint,
                 cluster::Ranks& ranks, RenderRecord& record) {
     Stopwatch watch;
     const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
-    record.needs = compiled.needs;
+    record.features = compiled.features;
     record.truncation_bound = compiled.truncation_bound(record.settings.depth);
     record.compile_s = watch.lap();
 
     const bool is_adaptive = record.target_error > 0;
-    RenderSums sums{image_key(scene, record),
+    Checkpoint sums{image_key(scene, record),
                     record.spp,
                     {},
                     {},
@@ -147,7 +147,7 @@ ImageKey image_key(const Scene& scene, const RenderRecord& record) {
             {"target_error", fmt::to_string(record.target_error)}};
 }
 
-Image render_image(const Scene& scene, const CheckpointOptions& options, bool is_quiet, Checkpoint& checkpoint,
+Image render_image(const Scene& scene, const CheckpointOptions& options, bool is_quiet, CheckpointKeeper& checkpoint,
                    cluster::Ranks& ranks, RenderRecord& record) {
     return record.precision == Precision::Double
                ? render_in<double>(scene, options, is_quiet, checkpoint, ranks, record)

@@ -1,11 +1,11 @@
 /// From a scene to the image and the record of its making, by way of sums that may come from, and go to, a checkpoint.
 #pragma once
 
-#include "cli/checkpoint.h"
+#include "cli/checkpoint_keeper.h"
 #include "cli/stats_json.h"
 #include "cluster/ranks.h"
-#include "core/image.h"
-#include "core/scene.h"
+#include "core/image/image.h"
+#include "core/scene/scene.h"
 
 namespace raypool::cli {
 
@@ -16,7 +16,7 @@ ImageKey image_key(const Scene& scene, const RenderRecord& record);
 /// Renders what the checkpoint of `options`, if one is resumed, lacks. Reads the settings in `record`, and fills in
 /// what was made. Where the checkpoint was asked to stop, the image is of the samples so far. Of several ranks, all
 /// call it, and rank 0 gets the image; what others get means nothing.
-Image render_image(const Scene& scene, const CheckpointOptions& options, bool is_quiet, Checkpoint& checkpoint,
+Image render_image(const Scene& scene, const CheckpointOptions& options, bool is_quiet, CheckpointKeeper& checkpoint,
                    cluster::Ranks& ranks, RenderRecord& record);
 
 }  // namespace raypool::cli

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "cli/print.h"
-#include "core/light_range.h"
-#include "core/trace.h"
+#include "core/film/light_range.h"
+#include "core/runtime/trace.h"
 
 namespace raypool::cli {
 
@@ -25,8 +25,8 @@ void print_work(const RenderSettings& settings, const RenderReport& report) {
           segments == 0 ? 0 : report.seconds * 1e9 * static_cast<double>(report.threads.size()) / segments);
     if (settings.count_work)
         print("{:.2f} box tests and {:.2f} primitive tests a segment\n",
-              static_cast<double>(report.total(&ThreadWork::box_tests)) / segments,
-              static_cast<double>(report.total(&ThreadWork::primitive_tests)) / segments);
+              static_cast<double>(report.total(&ThreadReport::box_tests)) / segments,
+              static_cast<double>(report.total(&ThreadReport::primitive_tests)) / segments);
 }
 
 /// What is known of the error of an adaptive render. An estimate is not printed where there is none.
@@ -77,9 +77,9 @@ void print_summary(const RenderRecord& record) {
     if (record.truncation_bound > 0)
         print("depth {} cuts off a radiance of at most {:.3g} a pixel\n", settings.depth, record.truncation_bound);
     print_step(record);
-    if (report.audit.non_finite > 0 || report.audit.clamped > 0)
+    if (report.statistics.non_finite > 0 || report.statistics.clamped > 0)
         print("bad samples: {} not finite and left out, {} channels cut (radiance {:.6g} in all)\n",
-              report.audit.non_finite, report.audit.clamped, report.audit.clamped_energy);
+              report.statistics.non_finite, report.statistics.clamped, report.statistics.clamped_energy);
     print("hash {}\n", record.hash);
 }
 

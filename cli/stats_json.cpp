@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/pool_options.h"
-#include "core/environment.h"
+#include "core/runtime/environment.h"
 
 namespace raypool::cli {
 
@@ -50,7 +50,7 @@ json stats_json(const RenderRecord& record) {
     const auto segments = static_cast<double>(report.segments());
     const auto ratio = [](double a, double b) { return b == 0 ? json() : json(a / b); };  // of nothing there is none
     json threads = json::array();
-    for (const ThreadWork& work : report.threads) {
+    for (const ThreadReport& work : report.threads) {
         json thread{
             {"paths", work.paths}, {"segments", work.segments}, {"busy_s", work.busy_s}, {"wait_s", work.wait_s}};
         if (record.settings.count_work) {
@@ -63,7 +63,7 @@ json stats_json(const RenderRecord& record) {
         threads.push_back(thread);
     }
     json rounds = json::array();
-    for (const RoundWork& work : report.rounds) {
+    for (const RoundReport& work : report.rounds) {
         json round{{"records_in", work.records_in},
                    {"records_out", work.records_out},
                    {"lanes", work.lanes},
@@ -93,14 +93,14 @@ json stats_json(const RenderRecord& record) {
         {"samples_done", record.samples_done},
         {"segments_per_path", ratio(segments, paths)},
         {"mpaths_per_s", ratio(paths * 1e-6, report.seconds)},
-        {"audit",
-         {{"non_finite", report.audit.non_finite},
-          {"clamped", report.audit.clamped},
-          {"clamped_energy", report.audit.clamped_energy}}},
+        {"sample_statistics",
+         {{"non_finite", report.statistics.non_finite},
+          {"clamped", report.statistics.clamped},
+          {"clamped_energy", report.statistics.clamped_energy}}},
         {"sums",
          {{"step", record.sum_step}, {"mean_radiance", record.mean_radiance}, {"dimmest_light", record.dimmest_light}}},
         {"truncation_bound", record.truncation_bound},
-        {"needs", feature_names(record.needs)},
+        {"features", feature_names(record.features)},
         {"settings", settings_json(record)},
         {"environment", environment_json()},
         {"threads", threads}};
@@ -119,7 +119,7 @@ json stats_json(const RenderRecord& record) {
     }
     for (const RenderReport& rank : record.ranks) {
         double busy_s = 0;
-        for (const ThreadWork& thread : rank.threads) busy_s += thread.busy_s;
+        for (const ThreadReport& thread : rank.threads) busy_s += thread.busy_s;
         stats["ranks"].push_back({{"threads", rank.threads.size()},
                                   {"paths", rank.paths()},
                                   {"segments", rank.segments()},

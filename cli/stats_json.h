@@ -6,8 +6,8 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "cli/options.h"
-#include "core/adaptive.h"
-#include "core/engine.h"
+#include "core/runtime/adaptive.h"
+#include "core/runtime/engine.h"
 #include "wavefront/settings.h"
 
 namespace raypool::cli {
@@ -15,7 +15,7 @@ namespace raypool::cli {
 /// A render from the scene file to the image file, for the record.
 struct RenderRecord {
     std::string scene_name;
-    SceneNeeds needs;
+    Features features;
     std::int64_t width = 0;
     std::int64_t height = 0;
     std::int64_t spp = 0;

@@ -14,7 +14,7 @@
 #include "cli/print.h"
 #include "cli/progress_bar.h"
 #include "cli/stop_signals.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace raypool::cli {
 

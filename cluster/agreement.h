@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cluster/ranks.h"
-#include "core/sums_file.h"
+#include "core/film/checkpoint.h"
 
 namespace raypool::cluster {
 

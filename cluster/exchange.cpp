@@ -20,12 +20,12 @@ void broadcast(Ranks& ranks, std::vector<T>& values) {
 struct ReportHead {
     double seconds;
     double setup_s;
-    SampleAudit audit;
+    SampleStatistics statistics;
     std::size_t record_bytes;
     std::size_t pool_rays;
     std::size_t pool_bytes;
 };
-static_assert(std::is_trivially_copyable_v<ReportHead> && std::is_trivially_copyable_v<ThreadWork>);
+static_assert(std::is_trivially_copyable_v<ReportHead> && std::is_trivially_copyable_v<ThreadReport>);
 
 }  // namespace
 
@@ -62,7 +62,7 @@ void sum_everywhere(Ranks& ranks, Framebuffer& framebuffer, const std::vector<st
     }
 }
 
-void broadcast(Ranks& ranks, RenderSums& sums) {
+void broadcast(Ranks& ranks, Checkpoint& sums) {
     broadcast(ranks, sums.ranges);
     broadcast(ranks, sums.sample_counts);
     sums.rounds = static_cast<int>(ranks.greatest(sums.rounds));
@@ -73,8 +73,8 @@ void broadcast(Ranks& ranks, RenderSums& sums) {
 }
 
 std::vector<RenderReport> gather(Ranks& ranks, const RenderReport& own) {
-    const ReportHead head{own.seconds, own.setup_s, own.audit, own.record_bytes, own.pool_rays, own.pool_bytes};
-    std::vector<std::byte> bytes(sizeof(head) + own.threads.size() * sizeof(ThreadWork));
+    const ReportHead head{own.seconds, own.setup_s, own.statistics, own.record_bytes, own.pool_rays, own.pool_bytes};
+    std::vector<std::byte> bytes(sizeof(head) + own.threads.size() * sizeof(ThreadReport));
     std::memcpy(bytes.data(), &head, sizeof(head));
     std::memcpy(bytes.data() + sizeof(head), own.threads.data(), bytes.size() - sizeof(head));
     std::vector<RenderReport> reports;
@@ -84,11 +84,11 @@ std::vector<RenderReport> gather(Ranks& ranks, const RenderReport& own) {
         RenderReport& report = reports.emplace_back();
         report.seconds = other.seconds;
         report.setup_s = other.setup_s;
-        report.audit = other.audit;
+        report.statistics = other.statistics;
         report.record_bytes = other.record_bytes;
         report.pool_rays = other.pool_rays;
         report.pool_bytes = other.pool_bytes;
-        report.threads.resize((told.size() - sizeof(other)) / sizeof(ThreadWork));
+        report.threads.resize((told.size() - sizeof(other)) / sizeof(ThreadReport));
         std::memcpy(report.threads.data(), told.data() + sizeof(other), told.size() - sizeof(other));
     }
     return reports;
@@ -99,13 +99,13 @@ RenderReport joined(const std::vector<RenderReport>& ranks) {
     for (const RenderReport& rank : ranks) {
         all.seconds = std::max(all.seconds, rank.seconds);
         all.setup_s = std::max(all.setup_s, rank.setup_s);
-        all.audit.add(rank.audit);
+        all.statistics.add(rank.statistics);
         all.record_bytes = std::max(all.record_bytes, rank.record_bytes);
         all.pool_rays = std::max(all.pool_rays, rank.pool_rays);
         all.pool_bytes += rank.pool_bytes;
         all.threads.insert(all.threads.end(), rank.threads.begin(), rank.threads.end());
     }
-    for (ThreadWork& thread : all.threads) thread.wait_s = std::max(0.0, all.seconds - all.setup_s - thread.busy_s);
+    for (ThreadReport& thread : all.threads) thread.wait_s = std::max(0.0, all.seconds - all.setup_s - thread.busy_s);
     return all;
 }
 

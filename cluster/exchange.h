@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cluster/ranks.h"
-#include "core/engine.h"
-#include "core/sums_file.h"
+#include "core/runtime/engine.h"
+#include "core/film/checkpoint.h"
 
 namespace raypool::cluster {
 
@@ -22,7 +22,7 @@ void sum_everywhere(Ranks& ranks, Framebuffer& framebuffer, const std::vector<st
 
 /// Tells what rank 0 has read from a checkpoint: all but the sums, which one rank must hold and no other, unless they
 /// have second moments.
-void broadcast(Ranks& ranks, RenderSums& sums);
+void broadcast(Ranks& ranks, Checkpoint& sums);
 
 /// What each rank did, at rank 0; nothing elsewhere. Without rounds.
 std::vector<RenderReport> gather(Ranks& ranks, const RenderReport& own);

@@ -13,7 +13,7 @@
 
 #include "cluster/exchange.h"
 #include "cluster/work_units.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace raypool::cluster {
 

@@ -12,7 +12,7 @@
 #include <memory>
 
 #include "cluster/ranks.h"
-#include "core/engine.h"
+#include "core/runtime/engine.h"
 
 namespace raypool::cluster {
 

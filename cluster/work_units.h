@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "core/sums_file.h"
+#include "core/film/checkpoint.h"
 
 namespace raypool::cluster {
 

@@ -1,4 +1,4 @@
-# raypool_embed_scenes(<target>) compiles scenes/*.json into the target: the texts that core/builtin_scenes.h declares.
+# raypool_embed_scenes(<target>) compiles scenes/*.json into the target: the texts that core/scene/builtin_scenes.h declares.
 # A changed, new or removed scene makes the next build run CMake again.
 
 function(raypool_embed_scenes target)
@@ -30,7 +30,7 @@ function(raypool_embed_scenes target)
   endforeach()
 
   file(GENERATE OUTPUT "${output}" CONTENT "// Generated from scenes/*.json by cmake/embed_scenes.cmake.
-#include \"core/builtin_scenes.h\"
+#include \"core/scene/builtin_scenes.h\"
 
 namespace raypool {
 namespace {

@@ -1,12 +1,12 @@
 /// The per-pixel engines: recursion as in the paper, and the same tracer as a loop.
 ///
-/// Threads take balanced items of the image (core/balanced_items.h), or pixels, lines or tiles under any schedule of
+/// Threads take balanced items of the image (core/runtime/balanced_items.h), or pixels, lines or tiles under any schedule of
 /// OpenMP. A thread owns the whole pixels that it renders, so nothing is shared but the scene; only where there are few
 /// pixels for many threads are their samples shared out too. Follows He, Song and Zong, "Parallel Ray Tracing with
 /// OpenMP": the paper's basic version is lines with the default schedule, its better ones `static,1` and single pixels.
 #pragma once
 
-#include "core/engine.h"
+#include "core/runtime/engine.h"
 
 namespace raypool::recursive {
 

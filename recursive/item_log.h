@@ -5,9 +5,9 @@
 
 #include <chrono>
 
-#include "core/cost_image.h"
-#include "core/loop.h"
-#include "core/trace.h"
+#include "core/image/cost_image.h"
+#include "core/runtime/loop.h"
+#include "core/runtime/trace.h"
 
 namespace raypool::recursive {
 

@@ -12,18 +12,18 @@
 
 #include <fmt/format.h>
 
-#include "core/balanced_items.h"
-#include "core/engine.h"
-#include "core/error.h"
-#include "core/loop.h"
-#include "core/team_loop.h"
+#include "core/runtime/balanced_items.h"
+#include "core/runtime/engine.h"
+#include "core/base/error.h"
+#include "core/runtime/loop.h"
+#include "core/runtime/team_loop.h"
 #include "recursive/item_log.h"
 #include "recursive/tracer.h"
 
 namespace raypool::recursive {
 
 /// Bytes of stack that one bounce takes, measured: a ray inside a white sphere bounces for ever.
-template <SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules>
+template <Features features, class Scalar, class Work, Splitting splitting, Rules rules>
 std::size_t stack_bytes_per_bounce() {
     Scene inside_sphere;
     inside_sphere.width = inside_sphere.height = 1;
@@ -34,7 +34,7 @@ std::size_t stack_bytes_per_bounce() {
     const auto deepest = [&](std::int32_t depth) {
         RenderSettings settings;
         settings.depth = depth;
-        Tracer<needs, Scalar, Work, splitting, rules> tracer(scene, settings, FixedPoint::make(1, 1));
+        Tracer<features, Scalar, Work, splitting, rules> tracer(scene, settings, FixedPoint::make(1, 1));
         tracer.template sample<Form::Recursive>(0, 0, 0);
         return tracer.deepest_stack();
     };
@@ -46,7 +46,7 @@ std::size_t stack_bytes_per_bounce() {
 inline constexpr std::size_t kStackReserve = 64 * 1024;
 
 /// Refuses a depth that the stack of one of the `threads` threads could not hold.
-template <SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules>
+template <Features features, class Scalar, class Work, Splitting splitting, Rules rules>
 void check_stack(std::int32_t depth, int threads) {
     std::size_t left = std::numeric_limits<std::size_t>::max();
     {
@@ -57,7 +57,7 @@ void check_stack(std::int32_t depth, int threads) {
         failure.rethrow();
     }
 
-    const std::size_t per_bounce = stack_bytes_per_bounce<needs, Scalar, Work, splitting, rules>();
+    const std::size_t per_bounce = stack_bytes_per_bounce<features, Scalar, Work, splitting, rules>();
     const std::size_t held = left < kStackReserve ? 0 : (left - kStackReserve) / per_bounce;
     if (depth == 0 || static_cast<std::size_t>(depth) < held) return;
     constexpr std::size_t kMegabyte = 1024 * 1024;
@@ -80,10 +80,10 @@ class LineTracer {
     /// Traces samples [first, end) of some pixels, which other threads may add to where `addition` says so.
     virtual void trace(const LinePixels& line, std::int64_t first, std::int64_t end, Addition addition,
                        ProgressBatch& progress) = 0;
-    virtual void report(ThreadWork& work, SampleAudit& audit) const = 0;
+    virtual void report(ThreadReport& work, SampleStatistics& statistics) const = 0;
 };
 
-template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules>
+template <Form form, Features features, class Scalar, class Work, Splitting splitting, Rules rules>
 class alignas(64) CompiledLineTracer final : public LineTracer {
   public:
     CompiledLineTracer(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer)
@@ -116,11 +116,11 @@ class alignas(64) CompiledLineTracer final : public LineTracer {
             progress.add(end - first);
         }
     }
-    void report(ThreadWork& work, SampleAudit& audit) const override {
+    void report(ThreadReport& work, SampleStatistics& statistics) const override {
         work.segments = tracer_.segments();
         work.box_tests = tracer_.work().box_tests;
         work.primitive_tests = tracer_.work().primitive_tests;
-        audit = tracer_.audit();
+        statistics = tracer_.statistics();
     }
 
   private:
@@ -132,7 +132,7 @@ class alignas(64) CompiledLineTracer final : public LineTracer {
 
     std::int64_t width_;
     Framebuffer& framebuffer_;
-    Tracer<needs, Scalar, Work, splitting, rules> tracer_;
+    Tracer<features, Scalar, Work, splitting, rules> tracer_;
     PixelCost cost_;
 };
 
@@ -143,15 +143,15 @@ struct TracerMaker {
     void (*check_stack)(std::int32_t depth, int threads);  ///< null where the stack does not grow with the depth
 };
 
-template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules>
+template <Form form, Features features, class Scalar, class Work, Splitting splitting, Rules rules>
 TracerMaker<Scalar> tracer_maker() {
     TracerMaker<Scalar> maker{[](const CompiledScene<Scalar>& scene, const RenderSettings& settings,
                                  Framebuffer& framebuffer) -> std::unique_ptr<LineTracer> {
-                                  return std::make_unique<CompiledLineTracer<form, needs, Scalar, Work, splitting, rules>>(
+                                  return std::make_unique<CompiledLineTracer<form, features, Scalar, Work, splitting, rules>>(
                                       scene, settings, framebuffer);
                               },
                               nullptr};
-    if constexpr (form == Form::Recursive) maker.check_stack = &check_stack<needs, Scalar, Work, splitting, rules>;
+    if constexpr (form == Form::Recursive) maker.check_stack = &check_stack<features, Scalar, Work, splitting, rules>;
     return maker;
 }
 
@@ -203,7 +203,7 @@ class Session : public RenderSession {
         for (auto& tracer : tracers) tracer = make_(scene_, settings_, framebuffer_);
         const double setup_s = omp_get_wtime() - start_s;
         TeamLoop loop(settings_);
-        RenderReport report = run_threads(settings_, [&](ThreadWork& work, SampleAudit& audit) {
+        RenderReport report = run_threads(settings_, [&](ThreadReport& work, SampleStatistics& statistics) {
             LineTracer& tracer = *tracers[static_cast<std::size_t>(omp_get_thread_num())];
             ProgressBatch progress(settings_.progress);
             ItemLog log(settings_, omp_get_thread_num());
@@ -219,7 +219,7 @@ class Session : public RenderSession {
                 visit(item, trace_line);
                 log.stop();
             });
-            tracer.report(work, audit);
+            tracer.report(work, statistics);
         });
         report.setup_s += setup_s;
         report.seconds += setup_s;
@@ -232,12 +232,12 @@ class Session : public RenderSession {
     decltype(TracerMaker<Scalar>::make) make_;
 };
 
-template <Form form, SceneNeeds needs, class Scalar, class Work, Splitting splitting = Splitting::Off,
+template <Form form, Features features, class Scalar, class Work, Splitting splitting = Splitting::Off,
           Rules rules = Rules::Any>
 std::unique_ptr<RenderSession> begin(const CompiledScene<Scalar>& scene, const RenderSettings& settings,
                                      Framebuffer& framebuffer) {
     return std::make_unique<Session<Scalar>>(scene, settings, framebuffer,
-                                             tracer_maker<form, needs, Scalar, Work, splitting, rules>());
+                                             tracer_maker<form, features, Scalar, Work, splitting, rules>());
 }
 
 /// Picks the code compiled for what the scene needs. Counting and splitting are compiled once each, for all needs.
@@ -245,14 +245,14 @@ template <Form form, class Scalar>
 std::unique_ptr<RenderSession> begin(const CompiledScene<Scalar>& scene, const RenderSettings& settings,
                                      Framebuffer& framebuffer) {
     if (settings.split_depth > 0)
-        return begin<form, kEverything, Scalar, WorkCount, Splitting::On>(scene, settings, framebuffer);
+        return begin<form, kEverything, Scalar, TestCount, Splitting::On>(scene, settings, framebuffer);
     const bool counts_for_image = settings.cost_image != nullptr && settings.cost_image->cost == Cost::Tests;
     if (settings.count_work || counts_for_image)
-        return begin<form, kEverything, Scalar, WorkCount>(scene, settings, framebuffer);
-    return dispatch_needs<kFirstCompiledNeeds<Scalar>>(scene.needs, [&]<SceneNeeds needs>() {
+        return begin<form, kEverything, Scalar, TestCount>(scene, settings, framebuffer);
+    return dispatch_features<kFirstCompiledFeatures<Scalar>>(scene.features, [&]<Features features>() {
         return are_plain(settings)
-                   ? begin<form, needs, Scalar, NoWorkCount, Splitting::Off, Rules::Plain>(scene, settings, framebuffer)
-                   : begin<form, needs, Scalar, NoWorkCount>(scene, settings, framebuffer);
+                   ? begin<form, features, Scalar, NoTestCount, Splitting::Off, Rules::Plain>(scene, settings, framebuffer)
+                   : begin<form, features, Scalar, NoTestCount>(scene, settings, framebuffer);
     });
 }
 

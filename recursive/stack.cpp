@@ -2,7 +2,7 @@
 
 #include <pthread.h>
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace raypool::recursive {
 

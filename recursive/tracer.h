@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/engine.h"
-#include "core/shade.h"
-#include "core/traverse.h"
+#include "core/runtime/engine.h"
+#include "core/shading/shade.h"
+#include "core/geometry/traverse.h"
 #include "recursive/stack.h"
 
 namespace raypool::recursive {
@@ -39,7 +39,7 @@ constexpr bool are_plain(const RenderSettings& settings) {
 }
 
 /// Traces paths for one thread. `Work` counts box and primitive tests, or nothing.
-template <SceneNeeds needs, class Scalar, class Work, Splitting splitting, Rules rules = Rules::Any>
+template <Features features, class Scalar, class Work, Splitting splitting, Rules rules = Rules::Any>
 class Tracer {
   public:
     /// Of the settings, it follows those of paths: depth, seed, sampler, split_depth, roulette.
@@ -56,7 +56,7 @@ class Tracer {
     const FixedRgb& sample(std::int64_t x, std::int64_t y, std::int64_t sample_id) {
         const PathKey<Scalar> key{static_cast<std::uint32_t>(y * scene_.width + x),
                                   static_cast<std::uint32_t>(sample_id)};
-        const Ray<Scalar> ray = camera_ray<needs, Scalar>(scene_.camera, static_cast<Scalar>(x), static_cast<Scalar>(y),
+        const Ray<Scalar> ray = camera_ray<features, Scalar>(scene_.camera, static_cast<Scalar>(x), static_cast<Scalar>(y),
                                                           key.pixel, key.sample, seed());
         sum_ = {};
         const Path<Scalar> path{ray, vec3<Scalar>(1, 1, 1), key, kNoPrimitive, 0};
@@ -71,7 +71,7 @@ class Tracer {
     [[nodiscard]] std::int64_t segments() const { return segments_; }
     [[nodiscard]] const Work& work() const { return work_; }
     [[nodiscard]] FixedSquare square(const FixedRgb& sample) const { return converter_.square(sample); }
-    [[nodiscard]] const SampleAudit& audit() const { return converter_.audit(); }
+    [[nodiscard]] const SampleStatistics& statistics() const { return converter_.statistics(); }
     [[nodiscard]] std::uintptr_t deepest_stack() const { return deepest_stack_; }
 
   private:
@@ -112,12 +112,12 @@ class Tracer {
         if (path_step::bounce(path.step) == static_cast<std::uint32_t>(depth_)) return Next::End;
         ++segments_;
         work_.begin_segment();
-        const Hit<Scalar> hit = closest_hit<needs>(scene_, path.ray, path.leaving_id, work_);
+        const Hit<Scalar> hit = closest_hit<features>(scene_, path.ray, path.leaving_id, work_);
         if (hit.primitive_id == kNoPrimitive) {
             return finish(path.throughput.cwiseProduct(sky_radiance<Scalar>(scene_.sky, path.ray.direction)));
         }
         const Scattered<Scalar> out =
-            scatter<needs, Scalar, splitting>(scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key,
+            scatter<features, Scalar, splitting>(scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key,
                                               path.step, seed(), split_depth_, rules == Rules::Any && roulette_);
         if (out.is_emitter) return finish(out.throughput);
         after.ray = {out.origin, out.direction, path.ray.time};

@@ -7,6 +7,9 @@ add_test(NAME documentation
 set_tests_properties(documentation PROPERTIES LABELS slow COST 100  # begun first, not to end last
                                               ENVIRONMENT OMP_WAIT_POLICY=passive)
 
+add_test(NAME layers COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/layers_test.py ${PROJECT_SOURCE_DIR})
+set_tests_properties(layers PROPERTIES LABELS unit)
+
 if(RAYPOOL_SANITIZE MATCHES thread)
   # Without Archer, ThreadSanitizer takes the barriers of OpenMP for races. libomp loads it by itself where it finds it.
   add_test(NAME archer COMMAND equivalence_test --gtest_filter=*HashMatrix*two_pixels*)

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <type_traits>
 
-#include "core/vec.h"
+#include "core/math/vec.h"
 
 namespace raypool::test {
 
@@ -28,7 +28,7 @@ class RandomInputs {
   public:
     explicit RandomInputs(std::uint64_t seed) : state_(seed) {}
 
-    /// splitmix64 (Steele et al. 2014); unrelated to core/random.h, which is among what is tested.
+    /// splitmix64 (Steele et al. 2014); unrelated to core/math/random.h, which is among what is tested.
     std::uint64_t bits() {
         state_ += 0x9e3779b97f4a7c15U;
         std::uint64_t z = state_;

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <string>
 
-#include "core/engine.h"
-#include "core/scene_reader.h"
+#include "core/runtime/engine.h"
+#include "core/scene/scene_reader.h"
 #include "recursive/engine.h"
 
 namespace raypool {

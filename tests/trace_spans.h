@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/engine.h"
-#include "core/trace.h"
+#include "core/runtime/engine.h"
+#include "core/runtime/trace.h"
 
 namespace raypool::test {
 

@@ -1,4 +1,4 @@
-/// Accumulators: the ways in which deposits reach the framebuffer. To compare them is one of the project's experiments.
+/// Accumulators: the ways in which contributions reach the framebuffer. To compare them is one of the project's experiments.
 ///
 /// An accumulator is made once a session and adds for all threads. Those that keep sums of their own bring them into
 /// the framebuffer, and begin anew, by merge(), a block of pixels at a time: threads may merge different blocks at
@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/framebuffer.h"
-#include "wavefront/deposits.h"
+#include "core/film/framebuffer.h"
+#include "wavefront/contributions.h"
 #include "wavefront/settings.h"
 
 namespace raypool::wavefront {
@@ -27,7 +27,7 @@ class AccumulatorBase {
     AccumulatorBase(const AccumulatorBase&) = delete;
     AccumulatorBase& operator=(const AccumulatorBase&) = delete;
     virtual ~AccumulatorBase() = default;
-    virtual void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int thread) = 0;
+    virtual void add(const Contributions<Scalar>& contributions, SampleConverter& converter, int thread) = 0;
     /// Whether threads share pixels from now on. Only who takes it that they do not must know. For one thread.
     virtual void share_pixels(bool /*are_shared*/) {}
     /// 0 where it adds to the framebuffer itself.
@@ -83,48 +83,48 @@ struct Planar {
     }
 };
 
-/// Deposits as integers, one after the other: converted eight at a time where the processor can.
+/// Contributions as integers, one after the other: converted eight at a time where the processor can.
 template <class Scalar>
-class EightDeposits {
+class EightContributions {
   public:
-    EightDeposits(const Deposits<Scalar>& deposits, SampleConverter& converter)
-        : deposits_(deposits), converter_(converter) {}
+    EightContributions(const Contributions<Scalar>& contributions, SampleConverter& converter)
+        : contributions_(contributions), converter_(converter) {}
 
     /// For i = 0, 1, 2, ... in turn.
     RAYPOOL_INLINE FixedRgb fixed(std::size_t i) {
         if constexpr (x86::kRoundsEight && sizeof(Scalar) == sizeof(float)) {
             if (i % 8 == 0)
-                are_converted_ = i + 8 <= deposits_.count() &&
+                are_converted_ = i + 8 <= contributions_.count() &&
                                  converter_.convert_eight(
-                                     {deposits_.channel(0, i), deposits_.channel(1, i), deposits_.channel(2, i)}, fixed_);
+                                     {contributions_.channel(0, i), contributions_.channel(1, i), contributions_.channel(2, i)}, fixed_);
             if (are_converted_) return {fixed_[0][i % 8], fixed_[1][i % 8], fixed_[2][i % 8]};
         }
-        return converter_.convert<Scalar>(deposits_.radiance(i));
+        return converter_.convert<Scalar>(contributions_.radiance(i));
     }
 
   private:
-    const Deposits<Scalar>& deposits_;
+    const Contributions<Scalar>& contributions_;
     SampleConverter& converter_;
     bool are_converted_ = false;
     std::int64_t fixed_[3][8];
 };
 
-/// Adds deposits, as integers, to sums in either layout: those of a pixel that follow each other at once, since an
+/// Adds contributions, as integers, to sums in either layout: those of a pixel that follow each other at once, since an
 /// atomic addition takes longer than all the rest, and by far where threads want the same pixel.
 template <Addition addition, class Layout, class Scalar>
-void add_integers(const Layout& layout, const Deposits<Scalar>& deposits, SampleConverter& converter) {
+void add_integers(const Layout& layout, const Contributions<Scalar>& contributions, SampleConverter& converter) {
     const bool has_squares = layout.squares != nullptr;
-    EightDeposits<Scalar> eight(deposits, converter);
-    for (std::size_t i = 0; i < deposits.count();) {
-        const std::uint32_t pixel = deposits.pixel(i);
+    EightContributions<Scalar> eight(contributions, converter);
+    for (std::size_t i = 0; i < contributions.count();) {
+        const std::uint32_t pixel = contributions.pixel(i);
         FixedRgb sum{};
         FixedSquare square;
         do {
             const FixedRgb fixed = eight.fixed(i);
             for (std::size_t k = 0; k < 3; ++k) sum[k] += fixed[k];
-            // A path that is not split deposits once, so that a deposit is a whole sample.
+            // A path that is not split contributions once, so that a contribution is a whole sample.
             if (has_squares) square.add(converter.square(fixed));
-        } while (++i < deposits.count() && deposits.pixel(i) == pixel);
+        } while (++i < contributions.count() && contributions.pixel(i) == pixel);
         for (int k = 0; k < 3; ++k) add_to<addition>(layout.at(pixel, k), sum[static_cast<std::size_t>(k)]);
         if (has_squares) {
             std::int64_t* digits = layout.squares + 2 * std::size_t{pixel};
@@ -144,11 +144,11 @@ template <class Scalar, class Layout, Addition addition>
 class SharedInt64 : public AccumulatorBase<Scalar> {
   public:
     explicit SharedInt64(const Layout& layout) : layout_(layout) {}
-    void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int) final {
+    void add(const Contributions<Scalar>& contributions, SampleConverter& converter, int) final {
         if (addition_ == Addition::Plain) {
-            add_integers<Addition::Plain>(layout_, deposits, converter);
+            add_integers<Addition::Plain>(layout_, contributions, converter);
         } else {
-            add_integers<Addition::Atomic>(layout_, deposits, converter);
+            add_integers<Addition::Atomic>(layout_, contributions, converter);
         }
     }
     void share_pixels(bool are_shared) final { addition_ = are_shared ? Addition::Atomic : addition; }
@@ -204,12 +204,12 @@ class PrivateInt64 : public AccumulatorBase<Scalar> {
             parts_.push_back(
                 {Zeros<std::int64_t>(sums_.size() + squares_.size()), std::vector<std::uint8_t>(block_count(), 0)});
     }
-    void add(const Deposits<Scalar>& deposits, SampleConverter& converter, int thread) override {
+    void add(const Contributions<Scalar>& contributions, SampleConverter& converter, int thread) override {
         Part& part = parts_[static_cast<std::size_t>(thread)];
         std::int64_t* sums = part.sums.data();
-        add_integers<Addition::Plain>(Interleaved{sums, squares_.empty() ? nullptr : sums + sums_.size()}, deposits,
+        add_integers<Addition::Plain>(Interleaved{sums, squares_.empty() ? nullptr : sums + sums_.size()}, contributions,
                                       converter);
-        for (std::size_t i = 0; i < deposits.count(); ++i) part.is_used[deposits.pixel(i) / kBlockPixels] = 1;
+        for (std::size_t i = 0; i < contributions.count(); ++i) part.is_used[contributions.pixel(i) / kBlockPixels] = 1;
     }
     [[nodiscard]] std::size_t block_count() const override { return block_count_of(sums_.size() / 3); }
     void merge(std::size_t block) override {
@@ -241,10 +241,10 @@ template <class Scalar, class Sum>
 class AtomicReal : public AccumulatorBase<Scalar> {
   public:
     explicit AtomicReal(Framebuffer& framebuffer) : framebuffer_(framebuffer), sums_(framebuffer.sums().size()) {}
-    void add(const Deposits<Scalar>& deposits, SampleConverter&, int) override {
-        for (std::size_t i = 0; i < deposits.count(); ++i) {
-            const Vec3<Scalar> radiance = deposits.radiance(i);
-            Sum* sum = sums_.data() + 3 * std::size_t{deposits.pixel(i)};
+    void add(const Contributions<Scalar>& contributions, SampleConverter&, int) override {
+        for (std::size_t i = 0; i < contributions.count(); ++i) {
+            const Vec3<Scalar> radiance = contributions.radiance(i);
+            Sum* sum = sums_.data() + 3 * std::size_t{contributions.pixel(i)};
             for (int k = 0; k < 3; ++k)
                 std::atomic_ref(sum[k]).fetch_add(static_cast<Sum>(radiance[k]), std::memory_order_relaxed);
         }

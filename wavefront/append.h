@@ -1,10 +1,10 @@
 /// The shared pool, and the ways in which survivors of a round reach the next: to compare them is an experiment.
 ///
-/// Records are worked on in batches, a range of the pool each, by one thread at a time. When a batch is done, keep()
-/// passes on its survivors; when all are, every thread calls end_round(), between two barriers. A new strategy is a
+/// Records are worked on in batches, a range of the pool each, by one thread at a time. When a batch is done, enqueue()
+/// enqueues its survivors; when all are, every thread calls end_round(), between two barriers. A new strategy is a
 /// class with these two functions. Where threads must wait for each other in between, end_round() calls the `wait`
 /// that it is given, so that waiting is not taken for work.
-/// Thread safety: keep() may be called by several threads for different batches; all else is read-only in a round.
+/// Thread safety: enqueue() may be called by several threads for different batches; all else is read-only in a round.
 #pragma once
 
 #include <omp.h>
@@ -41,24 +41,24 @@ class PathCounter {
     std::atomic<std::int64_t> next_ = 0;
 };
 
-/// How `capacity` records lie in batches of about `batch`, each with room for all branches of a path: capacity is at
+/// How `capacity` records lie in batches of about `batch`, each with slots for all branches of a path: capacity is at
 /// least 2^split_depth.
 struct PoolShape {
     PoolShape(std::size_t capacity, std::size_t batch, int split_depth)
         : batch_count(std::min((capacity + batch - 1) / batch, capacity >> static_cast<unsigned>(split_depth))),
           stride(((capacity + batch_count - 1) / batch_count + kPadding - 1) / kPadding * kPadding),
-          allocated(stride * batch_count + kRoomToGenerate) {}
+          allocated(stride * batch_count + kSlotsToGenerate) {}
 
-    static constexpr std::size_t kRoomToGenerate = 64;  ///< camera paths may be written behind a full range
+    static constexpr std::size_t kSlotsToGenerate = 64;  ///< camera paths may be written behind a full range
     std::size_t batch_count;
     std::size_t stride;     ///< from batch to batch: whole registers, so that no two threads touch one
-    std::size_t allocated;  ///< records that there is room for
+    std::size_t allocated;  ///< records that memory is allocated for
 };
 
-template <SceneNeeds needs, class Scalar>
+template <Features features, class Scalar>
 class SharedPool {
   public:
-    using Records = RayColumns<needs, Scalar>;
+    using Records = RayColumns<features, Scalar>;
 
     SharedPool(std::size_t capacity, std::size_t batch, int split_depth)
         : shape_(capacity, batch, split_depth),
@@ -82,11 +82,11 @@ class SharedPool {
 
     /// Records of a batch at the start of the round.
     [[nodiscard]] virtual std::size_t count(std::int64_t b) const = 0;
-    /// How many camera paths a batch may take in, once its survivors were kept.
-    [[nodiscard]] virtual std::size_t room(std::int64_t b) const = 0;
-    /// Passes on records [from, from + front) and `split` records of `overflow`. Returns where in the batch's range
+    /// How many camera paths a batch may take in, once its survivors are enqueued.
+    [[nodiscard]] virtual std::size_t free_slots(std::int64_t b) const = 0;
+    /// Enqueues records [from, from + front) and `split` records of `overflow`. Returns where in the batch's range
     /// the next records may be put.
-    virtual std::size_t keep(std::int64_t b, std::size_t from, std::size_t front, const Records& overflow,
+    virtual std::size_t enqueue(std::int64_t b, std::size_t from, std::size_t front, const Records& overflow,
                              std::size_t split) = 0;
     virtual void end_round(const std::function<void()>& wait) = 0;
 
@@ -103,22 +103,22 @@ class SharedPool {
 };
 
 /// Survivors stay at the front of their batch: nothing moves and nothing is shared, but batches thin out.
-template <SceneNeeds needs, class Scalar>
-class InPlacePool : public SharedPool<needs, Scalar> {
-    using Base = SharedPool<needs, Scalar>;
+template <Features features, class Scalar>
+class InPlacePool : public SharedPool<features, Scalar> {
+    using Base = SharedPool<features, Scalar>;
 
   public:
     InPlacePool(std::size_t capacity, std::size_t batch, int split_depth)
         : Base(capacity, batch, split_depth), capacity_(capacity), counts_(this->batch_count_) {}
 
     [[nodiscard]] std::size_t count(std::int64_t b) const override { return counts_[static_cast<std::size_t>(b)]; }
-    [[nodiscard]] std::size_t room(std::int64_t b) const override {
+    [[nodiscard]] std::size_t free_slots(std::int64_t b) const override {
         const bool has_one_more = static_cast<std::size_t>(b) < capacity_ % this->batch_count_;
         const std::size_t share = capacity_ / this->batch_count_ + (has_one_more ? 1 : 0);
         const std::size_t most = share >> static_cast<unsigned>(this->split_depth_);
         return most - std::min(most, count(b));
     }
-    std::size_t keep(std::int64_t b, std::size_t from, std::size_t front, const typename Base::Records& overflow,
+    std::size_t enqueue(std::int64_t b, std::size_t from, std::size_t front, const typename Base::Records& overflow,
                      std::size_t split) override {
         overflow.copy_to(this->records_, from + front, 0, split);
         const std::size_t end = from + front + split;
@@ -138,15 +138,15 @@ class InPlacePool : public SharedPool<needs, Scalar> {
     std::vector<std::size_t> counts_;
 };
 
-/// What the two strategies share that move survivors: the records of a round are dense, and room is shared out evenly.
-template <SceneNeeds needs, class Scalar>
-class DensePool : public SharedPool<needs, Scalar> {
+/// What the two strategies share that move survivors: the records of a round are dense, and free slots are shared out evenly.
+template <Features features, class Scalar>
+class DensePool : public SharedPool<features, Scalar> {
   public:
-    using SharedPool<needs, Scalar>::SharedPool;
+    using SharedPool<features, Scalar>::SharedPool;
     [[nodiscard]] std::size_t count(std::int64_t b) const override {
         return std::min(this->stride_, this->total_ - std::min(this->total_, this->first(b)));
     }
-    [[nodiscard]] std::size_t room(std::int64_t b) const override {
+    [[nodiscard]] std::size_t free_slots(std::int64_t b) const override {
         const std::size_t free = this->camera_capacity_ - std::min(this->camera_capacity_, this->total_);
         const bool has_one_more = static_cast<std::size_t>(b) < free % this->batch_count_;
         return free / this->batch_count_ + (has_one_more ? 1 : 0);
@@ -154,15 +154,15 @@ class DensePool : public SharedPool<needs, Scalar> {
 };
 
 /// Survivors move to a second pool, to places taken from one counter: one atomic addition a batch.
-template <SceneNeeds needs, class Scalar>
-class AtomicPool : public DensePool<needs, Scalar> {
-    using Base = DensePool<needs, Scalar>;
+template <Features features, class Scalar>
+class AtomicPool : public DensePool<features, Scalar> {
+    using Base = DensePool<features, Scalar>;
 
   public:
     AtomicPool(std::size_t capacity, std::size_t batch, int split_depth)
         : Base(capacity, batch, split_depth), next_records_(this->allocated()) {}
 
-    std::size_t keep(std::int64_t b, std::size_t from, std::size_t front, const typename Base::Records& overflow,
+    std::size_t enqueue(std::int64_t b, std::size_t from, std::size_t front, const typename Base::Records& overflow,
                      std::size_t split) override {
         const std::size_t target = next_.fetch_add(front + split, std::memory_order_relaxed);
         this->records_.copy_to(next_records_, target, from, front);
@@ -183,16 +183,16 @@ class AtomicPool : public DensePool<needs, Scalar> {
 };
 
 /// Survivors collect in a buffer of each thread, whose places in the next round are a prefix sum of their lengths.
-template <SceneNeeds needs, class Scalar>
-class PrefixSumPool : public DensePool<needs, Scalar> {
-    using Base = DensePool<needs, Scalar>;
+template <Features features, class Scalar>
+class PrefixSumPool : public DensePool<features, Scalar> {
+    using Base = DensePool<features, Scalar>;
 
   public:
     PrefixSumPool(std::size_t capacity, std::size_t batch, int split_depth, int threads)
         : Base(capacity, batch, split_depth), buffers_(static_cast<std::size_t>(threads)) {
         for (Buffer& buffer : buffers_) buffer.records = std::make_unique<typename Base::Records>(this->allocated());
     }
-    std::size_t keep(std::int64_t b, std::size_t from, std::size_t front, const typename Base::Records& overflow,
+    std::size_t enqueue(std::int64_t b, std::size_t from, std::size_t front, const typename Base::Records& overflow,
                      std::size_t split) override {
         Buffer& buffer = buffers_[static_cast<std::size_t>(omp_get_thread_num())];
         this->records_.copy_to(*buffer.records, buffer.count, from, front);
@@ -223,9 +223,9 @@ class PrefixSumPool : public DensePool<needs, Scalar> {
 
 /// What make_shared_pool() allocates: a pool by its shape; the one that survivors move to; or a buffer of each thread,
 /// any of which may have to take them all.
-template <SceneNeeds needs, class Scalar>
+template <Features features, class Scalar>
 std::size_t shared_pool_bytes(Append append, const PoolShape& shape, int threads) {
-    const std::size_t one = RayColumns<needs, Scalar>::bytes(shape.allocated);
+    const std::size_t one = RayColumns<features, Scalar>::bytes(shape.allocated);
     switch (append) {
         case Append::InPlace:
             break;
@@ -237,16 +237,16 @@ std::size_t shared_pool_bytes(Append append, const PoolShape& shape, int threads
     return one;
 }
 
-template <SceneNeeds needs, class Scalar>
-std::unique_ptr<SharedPool<needs, Scalar>> make_shared_pool(Append append, std::size_t capacity, std::size_t batch,
+template <Features features, class Scalar>
+std::unique_ptr<SharedPool<features, Scalar>> make_shared_pool(Append append, std::size_t capacity, std::size_t batch,
                                                             int split_depth, int threads) {
     switch (append) {
         case Append::InPlace:
-            return std::make_unique<InPlacePool<needs, Scalar>>(capacity, batch, split_depth);
+            return std::make_unique<InPlacePool<features, Scalar>>(capacity, batch, split_depth);
         case Append::Atomic:
-            return std::make_unique<AtomicPool<needs, Scalar>>(capacity, batch, split_depth);
+            return std::make_unique<AtomicPool<features, Scalar>>(capacity, batch, split_depth);
         case Append::PrefixSum:
-            return std::make_unique<PrefixSumPool<needs, Scalar>>(capacity, batch, split_depth, threads);
+            return std::make_unique<PrefixSumPool<features, Scalar>>(capacity, batch, split_depth, threads);
     }
     return nullptr;
 }

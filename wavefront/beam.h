@@ -76,10 +76,10 @@ class Beam {
     }
 
     /// The shapes of a block of a tree whose own boxes a ray may enter before `limit`: a bit each.
-    template <SceneNeeds needs, class Block>
+    template <Features features, class Block>
     RAYPOOL_INLINE unsigned may_meet(const Block& block, S limit) const {
         if constexpr (requires { block.radius; }) {
-            return may_meet<needs>(block, raypool::detail::load<Boxes>(block.padded_radius), limit);
+            return may_meet<features>(block, raypool::detail::load<Boxes>(block.padded_radius), limit);
         } else {
             const Interval<Boxes> inside = interval(block.low, block.high, limit);
             return mask_bits(inside.enter <= inside.exit);
@@ -87,12 +87,12 @@ class Beam {
     }
     /// The same of spheres that are in no tree, whose hits no box bounds. A hit is off the sphere by less than the pad
     /// and 4 eps of the distance from the origin (may_meet_sphere() has the analysis).
-    template <SceneNeeds needs, class Block>
+    template <Features features, class Block>
     RAYPOOL_INLINE unsigned may_meet_anywhere(const Block& block) const {
         const Boxes radius = raypool::detail::load<Boxes>(block.radius);
         const Boxes pad = raypool::detail::load<Boxes>(block.padded_radius) - radius;
         const Boxes room(32 * std::numeric_limits<S>::epsilon() * reach_);
-        return may_meet<needs>(block, radius + Boxes(4) * pad + room, kInfinity<S>);
+        return may_meet<features>(block, radius + Boxes(4) * pad + room, kInfinity<S>);
     }
 
   private:
@@ -122,14 +122,14 @@ class Beam {
     }
 
     /// Spheres in boxes of this half edge, over all times. An unused lane has a NaN radius.
-    template <SceneNeeds needs, class Block>
+    template <Features features, class Block>
     RAYPOOL_INLINE unsigned may_meet(const Block& block, const Boxes& half_edge, S limit) const {
         Vec3<Boxes> low;
         Vec3<Boxes> high;
         for (int i = 0; i < 3; ++i) {
             const Boxes from = raypool::detail::load<Boxes>(block.center[i]);
             low[i] = high[i] = from;
-            if constexpr (needs.motion) {
+            if constexpr (features.motion) {
                 const Boxes to = from + raypool::detail::load<Boxes>(block.motion[i]);
                 low[i] = min(from, to);
                 high[i] = max(from, to);
@@ -149,7 +149,7 @@ class Beam {
     bool is_coherent_ = true;
 };
 
-template <SceneNeeds needs, class Real, class Tree, class Work>
+template <Features features, class Real, class Tree, class Work>
 RAYPOOL_INLINE void walk_beam(const Tree& tree, const Beam<Wide<ScalarOf<Real>, kTreeWidth<ScalarOf<Real>>>>& beam,
                               const WideRays<Real>* rays, Hit<Real>* hit, int packets, int count, Work& work) {
     if (tree.nodes.empty()) return;
@@ -185,11 +185,11 @@ RAYPOOL_INLINE void walk_beam(const Tree& tree, const Beam<Wide<ScalarOf<Real>, 
         } else {
             const auto& block = tree.blocks[static_cast<std::size_t>(~child)];
             bool is_improved = false;
-            for (unsigned bits = beam.template may_meet<needs>(block, limit); bits != 0; bits &= bits - 1) {
+            for (unsigned bits = beam.template may_meet<features>(block, limit); bits != 0; bits &= bits - 1) {
                 const int i = std::countr_zero(bits);
                 work.count_primitives(count);
                 for (int p = 0; p < packets; ++p)
-                    is_improved |= any(intersect_lane<needs, InBox::Yes, Real>(block, i, rays[p], hit[p]));
+                    is_improved |= any(intersect_lane<features, InBox::Yes, Real>(block, i, rays[p], hit[p]));
             }
             if (is_improved) limit = farthest();
         }
@@ -205,31 +205,31 @@ RAYPOOL_INLINE void walk_beam(const Tree& tree, const Beam<Wide<ScalarOf<Real>, 
 
 /// The closest hits of packets of camera rays, which start on nothing. Every lane holds a ray, `count` of them are
 /// wanted; rays that no beam holds go packet by packet.
-template <SceneNeeds needs, Simd Real, class Work>
+template <Features features, Simd Real, class Work>
 RAYPOOL_INLINE void closest_hits(const CompiledScene<ScalarOf<Real>>& scene, const WideRays<Real>* rays,
                                  Hit<Real>* hit, int packets, int count, Work& work) {
     using S = ScalarOf<Real>;
     const detail::Beam<Wide<S, kTreeWidth<S>>> beam(rays, packets);
     if (!beam.is_coherent()) {
         for (int p = 0; p < packets; ++p)
-            hit[p] = closest_hits<needs, Real>(scene, rays[p],
+            hit[p] = closest_hits<features, Real>(scene, rays[p],
                                                lanes_before<Real>(static_cast<std::size_t>(count - p * kLanes<Real>)),
                                                work);
         return;
     }
     for (const auto& block : scene.large_spheres) {
-        for (unsigned bits = beam.template may_meet_anywhere<needs>(block); bits != 0; bits &= bits - 1) {
+        for (unsigned bits = beam.template may_meet_anywhere<features>(block); bits != 0; bits &= bits - 1) {
             work.count_primitives(count);
             for (int p = 0; p < packets; ++p)
-                intersect_lane<needs, InBox::No, Real>(block, std::countr_zero(bits), rays[p], hit[p]);
+                intersect_lane<features, InBox::No, Real>(block, std::countr_zero(bits), rays[p], hit[p]);
         }
     }
-    if constexpr (needs.flat) {
+    if constexpr (features.planar) {
         for (int p = 0; p < packets; ++p)
-            intersect_all<needs>(scene.planes, rays[p], std::min(count - p * kLanes<Real>, kLanes<Real>), hit[p], work);
-        detail::walk_beam<needs, Real>(scene.quad_tree, beam, rays, hit, packets, count, work);
+            intersect_all<features>(scene.planes, rays[p], std::min(count - p * kLanes<Real>, kLanes<Real>), hit[p], work);
+        detail::walk_beam<features, Real>(scene.quad_tree, beam, rays, hit, packets, count, work);
     }
-    detail::walk_beam<needs, Real>(scene.sphere_tree, beam, rays, hit, packets, count, work);
+    detail::walk_beam<features, Real>(scene.sphere_tree, beam, rays, hit, packets, count, work);
 }
 
 }  // namespace raypool::wavefront

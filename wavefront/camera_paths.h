@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <span>
 
-#include "core/loop.h"
-#include "core/path.h"
+#include "core/runtime/loop.h"
+#include "core/math/path.h"
 
 namespace raypool::wavefront {
 

@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/compiled_scene.h"
-#include "core/memory.h"
+#include "core/shading/compiled_scene.h"
+#include "core/base/memory.h"
 #include "wavefront/settings.h"
 
 namespace raypool::wavefront {

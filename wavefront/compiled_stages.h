@@ -6,12 +6,12 @@
 
 namespace raypool::wavefront {
 
-template <SceneNeeds needs, class Real, class Work, Splitting splitting>
-StagesMaker<record_needs(needs), ScalarOf<Real>> stages_maker() {
-    using Compiled = Stages<needs, Real, Work, splitting>;
+template <Features features, class Real, class Work, Splitting splitting>
+StagesMaker<record_features(features), ScalarOf<Real>> stages_maker() {
+    using Compiled = Stages<features, Real, Work, splitting>;
     using Scalar = ScalarOf<Real>;
     return {[](const RenderContext<Scalar>& context, std::size_t most_records,
-               int thread) -> std::unique_ptr<RecordStages<record_needs(needs), Scalar>> {
+               int thread) -> std::unique_ptr<RecordStages<record_features(features), Scalar>> {
                 return std::make_unique<Compiled>(context, most_records, thread);
             },
             &Compiled::bytes};

@@ -5,7 +5,7 @@
 /// to the last bit, whatever the settings, unless the accumulator adds floating-point numbers.
 #pragma once
 
-#include "core/engine.h"
+#include "core/runtime/engine.h"
 #include "wavefront/settings.h"
 
 namespace raypool::wavefront {

@@ -3,13 +3,13 @@
 
 #include <array>
 
-#include "core/engine.h"
-#include "core/traverse.h"
+#include "core/runtime/engine.h"
+#include "core/geometry/traverse.h"
 
 namespace raypool::wavefront {
 
 /// Work of stages that counts lists, too.
-struct ListCount : WorkCount {
+struct ListCount : TestCount {
     /// The root is level 0; leaves below the deepest nodes are the last.
     std::array<ListLevel, kMostTreeLevels + 1> lists{};
     std::size_t level = 0;

@@ -7,11 +7,11 @@ namespace raypool::wavefront {
 
 namespace detail {
 
-template <SceneNeeds needs, class Real, class Tree, class Work>
+template <Features features, class Real, class Tree, class Work>
 RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, const Mask<Real>& is_active,
                                 Hit<Real>& hit, Work& work) {
     if (tree.nodes.empty()) return;
-    const raypool::detail::TreeBounds<needs, Tree> bounds(tree);
+    const raypool::detail::TreeBounds<features, Tree> bounds(tree);
     using S = ScalarOf<Real>;
     constexpr int kWidth = kTreeWidth<S>;
     struct Entry {
@@ -40,7 +40,7 @@ RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, co
             const auto& block = tree.blocks[static_cast<std::size_t>(~child)];
             for_each_shape(block, [&](int i) {
                 work.count_primitives(std::popcount(mask_bits(is_active)));
-                intersect_lane<needs, InBox::Yes, Real>(block, i, rays, hit);
+                intersect_lane<features, InBox::Yes, Real>(block, i, rays, hit);
             });
         }
         if (top == stack) return;
@@ -51,17 +51,17 @@ RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, co
 }  // namespace detail
 
 /// The closest hits of a packet. Lanes that are not active get some hit or none.
-template <SceneNeeds needs, class Real, class Work>
+template <Features features, class Real, class Work>
 RAYPOOL_INLINE Hit<Real> closest_hits(const CompiledScene<ScalarOf<Real>>& scene, const WideRays<Real>& rays,
                                       const Mask<Real>& is_active, Work& work) {
     Hit<Real> hit;
     const int count = std::popcount(mask_bits(is_active));
-    intersect_all<needs>(scene.large_spheres, rays, count, hit, work);
-    if constexpr (needs.flat) {
-        intersect_all<needs>(scene.planes, rays, count, hit, work);
-        detail::walk_packet<needs, Real>(scene.quad_tree, rays, is_active, hit, work);
+    intersect_all<features>(scene.large_spheres, rays, count, hit, work);
+    if constexpr (features.planar) {
+        intersect_all<features>(scene.planes, rays, count, hit, work);
+        detail::walk_packet<features, Real>(scene.quad_tree, rays, is_active, hit, work);
     }
-    detail::walk_packet<needs, Real>(scene.sphere_tree, rays, is_active, hit, work);
+    detail::walk_packet<features, Real>(scene.sphere_tree, rays, is_active, hit, work);
     return hit;
 }
 

@@ -10,9 +10,9 @@
 #include <memory>
 #include <new>
 
-#include "core/needs.h"
-#include "core/path.h"
-#include "core/vec.h"
+#include "core/scene/features.h"
+#include "core/math/path.h"
+#include "core/math/vec.h"
 
 namespace raypool::wavefront {
 
@@ -27,11 +27,11 @@ struct RayRecord {
 };
 
 /// The one list of fields.
-template <SceneNeeds needs, class Record, class Visit>
+template <Features features, class Record, class Visit>
 RAYPOOL_INLINE void for_each_field(Record& record, Visit visit) {
     for (int i = 0; i < 3; ++i) visit(record.ray.origin[i]);
     for (int i = 0; i < 3; ++i) visit(record.ray.direction[i]);
-    if constexpr (needs.motion) visit(record.ray.time);
+    if constexpr (features.motion) visit(record.ray.time);
     for (int i = 0; i < 3; ++i) visit(record.throughput[i]);
     visit(record.key.pixel);
     visit(record.key.sample);
@@ -39,11 +39,11 @@ RAYPOOL_INLINE void for_each_field(Record& record, Visit visit) {
     visit(record.step);
 }
 
-template <SceneNeeds needs, class Scalar>
+template <Features features, class Scalar>
 constexpr std::size_t record_bytes() {
     std::size_t bytes = 0;
     RayRecord<Scalar> record{};
-    for_each_field<needs>(record, [&](const auto& field) { bytes += sizeof(field); });
+    for_each_field<features>(record, [&](const auto& field) { bytes += sizeof(field); });
     return bytes;
 }
 
@@ -60,14 +60,14 @@ struct LaneOf<V> {
 inline constexpr std::size_t kPadding = 16;
 
 /// The needs that a record shows: scenes that agree in them have one kind of record.
-constexpr SceneNeeds record_needs(const SceneNeeds& needs) {
-    SceneNeeds shown;
-    shown.motion = needs.motion;
+constexpr Features record_features(const Features& features) {
+    Features shown;
+    shown.motion = features.motion;
     return shown;
 }
 
 /// Columns of `capacity` records. Not synchronised; threads may work on ranges that do not share records.
-template <SceneNeeds needs, class Scalar>
+template <Features features, class Scalar>
 class ColumnsOfKind {
   public:
     /// 0 records take no memory.
@@ -77,7 +77,7 @@ class ColumnsOfKind {
     }
 
     static constexpr std::size_t bytes(std::size_t capacity) {
-        return record_bytes<needs, Scalar>() * (capacity + kPadding);
+        return record_bytes<features, Scalar>() * (capacity + kPadding);
     }
 
     /// Records first, first + 1, ... by lane.
@@ -86,7 +86,7 @@ class ColumnsOfKind {
         RayRecord<Real> record;
         record.ray.time = Real(0);
         const std::byte* column = memory_.get();
-        for_each_field<needs>(record, [&](auto& field) {
+        for_each_field<features>(record, [&](auto& field) {
             using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;
             const T* from = reinterpret_cast<const T*>(column) + first;
             if constexpr (Simd<Real>) {
@@ -106,7 +106,7 @@ class ColumnsOfKind {
         std::byte* column = memory_.get();
         if (first + kLanes<Real> <= end) [[likely]] {
             const LanePacker<Real> packer(bits);
-            for_each_field<needs>(record, [&](const auto& field) {
+            for_each_field<features>(record, [&](const auto& field) {
                 using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;
                 packer.store(reinterpret_cast<T*>(column) + first, field);
                 column += stride_ * sizeof(T);
@@ -121,7 +121,7 @@ class ColumnsOfKind {
         RayRecord<Scalar> record;
         const std::byte* from = memory_.get();
         std::byte* to = other.memory_.get();
-        for_each_field<needs>(record, [&](const auto& field) {
+        for_each_field<features>(record, [&](const auto& field) {
             std::memcpy(to + target * sizeof(field), from + first * sizeof(field), count * sizeof(field));
             from += stride_ * sizeof(field);
             to += other.stride_ * sizeof(field);
@@ -132,7 +132,7 @@ class ColumnsOfKind {
     void permute(std::size_t first, std::size_t count, const std::uint32_t* order, std::byte* scratch) {
         RayRecord<Scalar> record;
         std::byte* column = memory_.get();
-        for_each_field<needs>(record, [&](const auto& field) {
+        for_each_field<features>(record, [&](const auto& field) {
             using T = std::remove_cvref_t<decltype(field)>;
             T* values = reinterpret_cast<T*>(column) + first;
             T* sorted = reinterpret_cast<T*>(scratch);
@@ -146,7 +146,7 @@ class ColumnsOfKind {
     template <class Real>
     [[gnu::noinline]] void append_by_lane(std::size_t first, const RayRecord<Real>& record, unsigned bits) {
         std::byte* column = memory_.get();
-        for_each_field<needs>(record, [&](const auto& field) {
+        for_each_field<features>(record, [&](const auto& field) {
             using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;
             T* target = reinterpret_cast<T*>(column) + first;
             for (unsigned left = bits; left != 0; left &= left - 1) *target++ = lane(field, std::countr_zero(left));
@@ -162,7 +162,7 @@ class ColumnsOfKind {
 };
 
 /// The columns for a scene: one type for each kind of record.
-template <SceneNeeds needs, class Scalar>
-using RayColumns = ColumnsOfKind<record_needs(needs), Scalar>;
+template <Features features, class Scalar>
+using RayColumns = ColumnsOfKind<record_features(features), Scalar>;
 
 }  // namespace raypool::wavefront

@@ -11,8 +11,8 @@
 #include <span>
 #include <utility>
 
-#include "core/engine.h"
-#include "core/loop.h"
+#include "core/runtime/engine.h"
+#include "core/runtime/loop.h"
 #include "wavefront/camera_paths.h"
 #include "wavefront/ray_record.h"
 #include "wavefront/round_log.h"
@@ -35,10 +35,10 @@ struct RenderContext {
 };
 
 /// The stages of one thread, and the records that splitting added, which wait until there is room for them.
-template <SceneNeeds needs, class Scalar>
+template <Features features, class Scalar>
 class RecordStages {
   public:
-    using Records = RayColumns<needs, Scalar>;
+    using Records = RayColumns<features, Scalar>;
 
     RecordStages(const RenderContext<Scalar>& context, std::size_t most_overflow, int thread)
         : overflow_(most_overflow), log_(context.settings, thread) {}
@@ -54,7 +54,7 @@ class RecordStages {
     virtual std::size_t generate(Records& records, std::size_t first, CameraPaths paths) = 0;
     /// Takes records [first, first + count) through one bounce. Returns how many survive, now at the front.
     virtual std::size_t advance(Records& records, std::size_t first, std::size_t count) = 0;
-    virtual void report(ThreadWork& work, SampleAudit& audit) const = 0;
+    virtual void report(ThreadReport& work, SampleStatistics& statistics) const = 0;
     /// By level of the trees; none where they are not counted.
     [[nodiscard]] virtual std::span<const ListLevel> lists() const = 0;
 
@@ -68,13 +68,13 @@ class RecordStages {
         return std::exchange(overflow_count_, 0);
     }
 
-    /// Hands records [first, first + count) of batch b and the overflow to a shared pool. Returns where in the batch's
+    /// Enqueues records [first, first + count) of batch b and the overflow in a shared pool. Returns where in the batch's
     /// range the next records may be put.
     template <class Pool>
-    std::size_t pass_on(Pool& pool, std::int64_t b, std::size_t first, std::size_t count) {
+    std::size_t enqueue(Pool& pool, std::int64_t b, std::size_t first, std::size_t count) {
         log_.start();
         const std::size_t split = std::exchange(overflow_count_, 0);
-        const std::size_t end = pool.keep(b, first, count, overflow_, split);
+        const std::size_t end = pool.enqueue(b, first, count, overflow_, split);
         log_.stop(Stage::Append, count + split);
         return end;
     }
@@ -111,10 +111,10 @@ class RecordStages {
 };
 
 /// Makes the stages of a render: those that stages_maker() was asked for.
-template <SceneNeeds needs, class Scalar>
+template <Features features, class Scalar>
 struct StagesMaker {
     /// For batches of at most `most_records`.
-    std::unique_ptr<RecordStages<needs, Scalar>> (*make)(const RenderContext<Scalar>&, std::size_t most_records,
+    std::unique_ptr<RecordStages<features, Scalar>> (*make)(const RenderContext<Scalar>&, std::size_t most_records,
                                                          int thread);
     /// The memory of one of these.
     std::size_t (*bytes)(const RenderContext<Scalar>&, std::size_t most_records);

@@ -4,8 +4,8 @@
 /// each of the large ones: they take most of the time that the project takes to build.
 #pragma once
 
-#include "core/shade.h"
-#include "core/traverse.h"
+#include "core/shading/shade.h"
+#include "core/geometry/traverse.h"
 #include "wavefront/engine.h"
 #include "wavefront/list_count.h"
 #include "wavefront/record_stages.h"
@@ -17,19 +17,19 @@ template <class Scalar>
 using WideReal = Wide<Scalar, stdx::native_simd<Scalar>::size()>;
 
 /// Makes Stages<needs, Real, Work, splitting>. A file that instantiates it includes compiled_stages.h.
-template <SceneNeeds needs, class Real, class Work, Splitting splitting>
-StagesMaker<record_needs(needs), ScalarOf<Real>> stages_maker();
+template <Features features, class Real, class Work, Splitting splitting>
+StagesMaker<record_features(features), ScalarOf<Real>> stages_maker();
 
 /// In float for both kinds of record, in double for that of moving shapes.
-template <SceneNeeds needs, class Scalar>
+template <Features features, class Scalar>
 std::unique_ptr<RenderSession> begin_session(const CompiledScene<Scalar>&, const RenderSettings&, const PoolSettings&,
-                                             Framebuffer&, const StagesMaker<needs, Scalar>&);
+                                             Framebuffer&, const StagesMaker<features, Scalar>&);
 
-template <SceneNeeds needs, class Real, class Work, Splitting splitting>
+template <Features features, class Real, class Work, Splitting splitting>
 std::unique_ptr<RenderSession> begin(const CompiledScene<ScalarOf<Real>>& scene, const RenderSettings& settings,
                                      const PoolSettings& pool, Framebuffer& framebuffer) {
-    return begin_session<record_needs(needs), ScalarOf<Real>>(scene, settings, pool, framebuffer,
-                                                              stages_maker<needs, Real, Work, splitting>());
+    return begin_session<record_features(features), ScalarOf<Real>>(scene, settings, pool, framebuffer,
+                                                              stages_maker<features, Real, Work, splitting>());
 }
 
 /// Picks the code compiled for what the scene needs. One code counts and splits, for all needs.
@@ -38,8 +38,8 @@ std::unique_ptr<RenderSession> begin(const CompiledScene<ScalarOf<Real>>& scene,
                                      const PoolSettings& pool, Framebuffer& framebuffer) {
     if (settings.split_depth > 0 || settings.count_work)
         return begin<kEverything, Real, ListCount, Splitting::On>(scene, settings, pool, framebuffer);
-    return dispatch_needs<kFirstCompiledNeeds<ScalarOf<Real>>>(scene.needs, [&]<SceneNeeds needs>() {
-        return begin<needs, Real, NoWorkCount, Splitting::Off>(scene, settings, pool, framebuffer);
+    return dispatch_features<kFirstCompiledFeatures<ScalarOf<Real>>>(scene.features, [&]<Features features>() {
+        return begin<features, Real, NoTestCount, Splitting::Off>(scene, settings, pool, framebuffer);
     });
 }
 

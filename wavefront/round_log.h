@@ -10,8 +10,8 @@
 
 #include <vector>
 
-#include "core/engine.h"
-#include "core/trace.h"
+#include "core/runtime/engine.h"
+#include "core/runtime/trace.h"
 
 namespace raypool::wavefront {
 
@@ -67,7 +67,7 @@ class RoundLog {
     /// Records that were advanced, those that survived, and the lanes that were used for them.
     void advanced(std::size_t records, std::size_t survivors, std::size_t lanes) {
         if (!is_on_) return;
-        RoundWork work;
+        RoundReport work;
         work.records_in = static_cast<std::int64_t>(records);
         work.records_out = static_cast<std::int64_t>(survivors);
         work.lanes = static_cast<std::int64_t>(lanes);
@@ -96,7 +96,7 @@ class RoundLog {
     void finish() {
         if (lane_ != nullptr) end_span();
     }
-    [[nodiscard]] const std::vector<RoundWork>& rounds() const { return rounds_; }
+    [[nodiscard]] const std::vector<RoundReport>& rounds() const { return rounds_; }
 
   private:
     static constexpr std::size_t kMostRounds = 4096;  ///< later ones are added to the last
@@ -133,7 +133,7 @@ class RoundLog {
         lane_->span(kStageNames[static_cast<std::size_t>(span_.stage)], span_.begin_s, span_.end_s, figures);
     }
 
-    RoundWork& round() {
+    RoundReport& round() {
         const std::size_t i = round_ + ahead_;
         if (i >= rounds_.size()) rounds_.resize(i + 1);
         return rounds_[i];
@@ -143,14 +143,14 @@ class RoundLog {
     double mark_s_ = 0;
     std::size_t round_ = 0;
     std::size_t ahead_ = 0;
-    std::vector<RoundWork> rounds_;
+    std::vector<RoundReport> rounds_;
 
     Trace* trace_;
     int thread_;
     Trace::Lane* lane_ = nullptr;  ///< null unless traced; all that follows is for it
     double round_begin_s_ = 0;
     std::int64_t traced_rounds_ = 0;
-    RoundWork traced_;  ///< the round under way
+    RoundReport traced_;  ///< the round under way
     std::int64_t batch_ = kNoBatch;
     Span span_{};
     bool has_span_ = false;

@@ -8,8 +8,8 @@
 
 #include <omp.h>
 
-#include "core/balanced_items.h"
-#include "core/team_loop.h"
+#include "core/runtime/balanced_items.h"
+#include "core/runtime/team_loop.h"
 #include "wavefront/append.h"
 #include "wavefront/record_stages.h"
 #include "wavefront/session.h"
@@ -25,10 +25,10 @@ inline std::size_t camera_capacity(std::size_t capacity, int split_depth) {
 }
 
 /// A pool of one thread. Camera paths are pushed into it; it does rounds whenever it is full.
-template <SceneNeeds needs, class Scalar>
+template <Features features, class Scalar>
 class ThreadPool {
   public:
-    ThreadPool(const RenderContext<Scalar>& context, const StagesMaker<needs, Scalar>& maker, std::size_t capacity,
+    ThreadPool(const RenderContext<Scalar>& context, const StagesMaker<features, Scalar>& maker, std::size_t capacity,
                int thread)
         : context_(context),
           camera_capacity_(camera_capacity(capacity, context.settings.split_depth)),
@@ -36,9 +36,9 @@ class ThreadPool {
           stages_(maker.make(context, capacity, thread)) {}
 
     /// The memory of one of these.
-    static std::size_t bytes(const RenderContext<Scalar>& context, const StagesMaker<needs, Scalar>& maker,
+    static std::size_t bytes(const RenderContext<Scalar>& context, const StagesMaker<features, Scalar>& maker,
                              std::size_t capacity) {
-        return RayColumns<needs, Scalar>::bytes(capacity) + maker.bytes(context, capacity);
+        return RayColumns<features, Scalar>::bytes(capacity) + maker.bytes(context, capacity);
     }
 
     /// Brings in paths, and makes room for them by rounds: the pool holds at most `most` records, if it can hold as
@@ -63,7 +63,7 @@ class ThreadPool {
         while (count_ > 0) round();
     }
 
-    RecordStages<needs, Scalar>& stages() { return *stages_; }
+    RecordStages<features, Scalar>& stages() { return *stages_; }
 
   private:
     void round() {
@@ -75,21 +75,21 @@ class ThreadPool {
 
     const RenderContext<Scalar>& context_;
     std::size_t camera_capacity_;
-    RayColumns<needs, Scalar> records_;
+    RayColumns<features, Scalar> records_;
     std::size_t count_ = 0;
-    std::unique_ptr<RecordStages<needs, Scalar>> stages_;
+    std::unique_ptr<RecordStages<features, Scalar>> stages_;
 };
 
 /// The loop over the image of per-thread pools: work items are handed out as to the recursive engine.
-template <SceneNeeds needs, class Scalar>
+template <Features features, class Scalar>
 class ThreadPoolSession : public PoolSession<Scalar> {
     using Base = PoolSession<Scalar>;
-    using Pool = ThreadPool<needs, Scalar>;
+    using Pool = ThreadPool<features, Scalar>;
 
   public:
     ThreadPoolSession(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const PoolSettings& pool,
-                      Framebuffer& framebuffer, const StagesMaker<needs, Scalar>& maker)
-        : Base(scene, settings, pool, framebuffer, record_bytes<needs, Scalar>()) {
+                      Framebuffer& framebuffer, const StagesMaker<features, Scalar>& maker)
+        : Base(scene, settings, pool, framebuffer, record_bytes<features, Scalar>()) {
         this->take_memory(
             static_cast<std::size_t>(settings.threads) * Pool::bytes(this->context(), maker, this->capacity()),
             this->capacity());
@@ -137,7 +137,7 @@ class ThreadPoolSession : public PoolSession<Scalar> {
         RenderReport setup;
         if (unit.pixels != nullptr) count_setup(settings, start_s, settings.threads, setup);
 
-        RenderReport report = run_threads(settings, [&](ThreadWork& work, SampleAudit& audit) {
+        RenderReport report = run_threads(settings, [&](ThreadReport& work, SampleStatistics& statistics) {
             Pool& pool = *pools_[static_cast<std::size_t>(omp_get_thread_num())];
             pool.stages().begin();
             ProgressBatch progress(settings.progress);
@@ -146,13 +146,13 @@ class ThreadPoolSession : public PoolSession<Scalar> {
             });
             pool.drain();
             pool.stages().log().finish();
-            pool.stages().report(work, audit);
+            pool.stages().report(work, statistics);
             work.wait_s += waited_s;
         });
         report.add(setup);
         return report;
     }
-    [[nodiscard]] const std::vector<RoundWork>& rounds(std::size_t thread) const override {
+    [[nodiscard]] const std::vector<RoundReport>& rounds(std::size_t thread) const override {
         return pools_[thread]->stages().log().rounds();
     }
     [[nodiscard]] std::span<const ListLevel> lists(std::size_t thread) const override { return pools_[thread]->stages().lists(); }
@@ -161,25 +161,25 @@ class ThreadPoolSession : public PoolSession<Scalar> {
 };
 
 /// The paper's pool: one for all threads, and a barrier after every round. Where camera paths enter as soon as there is
-/// room, the last of them leave a pool that only thins out: batches whose records stay in them are then finished, each
+/// free_slots, the last of them leave a pool that only thins out: batches whose records stay in them are then finished, each
 /// by one thread, in place of dozens of rounds with nothing in them but barriers.
-template <SceneNeeds needs, class Scalar>
+template <Features features, class Scalar>
 class SharedPoolSession : public PoolSession<Scalar> {
     using Base = PoolSession<Scalar>;
-    using ThreadStages = RecordStages<needs, Scalar>;
+    using ThreadStages = RecordStages<features, Scalar>;
 
   public:
     SharedPoolSession(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const PoolSettings& pool,
-                      Framebuffer& framebuffer, const StagesMaker<needs, Scalar>& maker)
-        : Base(scene, settings, pool, framebuffer, record_bytes<needs, Scalar>()) {
+                      Framebuffer& framebuffer, const StagesMaker<features, Scalar>& maker)
+        : Base(scene, settings, pool, framebuffer, record_bytes<features, Scalar>()) {
         const std::size_t batch = std::clamp<std::size_t>(static_cast<std::size_t>(pool.batch),
                                                           std::size_t{1} << settings.split_depth, this->capacity());
         const PoolShape shape(this->capacity(), batch, settings.split_depth);
         const auto threads = static_cast<std::size_t>(settings.threads);
-        this->take_memory(shared_pool_bytes<needs, Scalar>(pool.append, shape, settings.threads) +
+        this->take_memory(shared_pool_bytes<features, Scalar>(pool.append, shape, settings.threads) +
                               threads * maker.bytes(this->context(), shape.stride),
                           shape.stride);
-        pool_ = make_shared_pool<needs, Scalar>(pool.append, this->capacity(), batch, settings.split_depth,
+        pool_ = make_shared_pool<features, Scalar>(pool.append, this->capacity(), batch, settings.split_depth,
                                                 settings.threads);
         stages_.resize(threads);
         this->finish_setup([&](int thread) {
@@ -197,9 +197,9 @@ class SharedPoolSession : public PoolSession<Scalar> {
         loop.schedule = this->context().pool.batch_schedule;
 
         // Nothing in here may throw: the other threads would wait at a barrier for ever.
-        return run_threads(loop, [&](ThreadWork& work, SampleAudit& audit) noexcept {
+        return run_threads(loop, [&](ThreadReport& work, SampleStatistics& statistics) noexcept {
             const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-            SharedPool<needs, Scalar>& pool = *pool_;
+            SharedPool<features, Scalar>& pool = *pool_;
             ThreadStages& stages = *stages_[thread];
             stages.begin();
             ProgressBatch progress(settings.progress);
@@ -217,16 +217,16 @@ class SharedPoolSession : public PoolSession<Scalar> {
                     }
                     // Every record by one bounce; what survives goes on to the next round ...
                     const std::size_t survivors = stages.advance(pool.records(), pool.first(b), pool.count(b));
-                    std::size_t end = stages.pass_on(pool, b, pool.first(b), survivors);
+                    std::size_t end = stages.enqueue(pool, b, pool.first(b), survivors);
 
-                    // ... and camera rays take what room there is.
-                    for (std::size_t room = takes_camera ? pool.room(b) : 0; room > 0;) {
-                        const PathCounter::Part part = camera.take(std::min(room, kCameraChunk));
+                    // ... and camera rays take the free slots.
+                    for (std::size_t free_slots = takes_camera ? pool.free_slots(b) : 0; free_slots > 0;) {
+                        const PathCounter::Part part = camera.take(std::min(free_slots, kCameraChunk));
                         if (part.count == 0) break;
                         const std::size_t made =
                             stages.generate(pool.records(), end, image.part(part.begin, part.count));
-                        room -= std::min(room, made + stages.overflow_count());
-                        end = stages.pass_on(pool, b, end, made);
+                        free_slots -= std::min(free_slots, made + stages.overflow_count());
+                        end = stages.enqueue(pool, b, end, made);
                         progress.add(part.count);
                     }
                 }
@@ -240,25 +240,25 @@ class SharedPoolSession : public PoolSession<Scalar> {
                 if (thread == 0) stages.log().occupancy(pool.size(), Trace::Event::Kind::Counter);
                 stages.log().end_round();
             }
-            stages.report(work, audit);
+            stages.report(work, statistics);
         });
     }
     /// Advances a batch, which has room for all branches of its paths, until it is empty.
-    static void finish(ThreadStages& stages, SharedPool<needs, Scalar>& pool, std::int64_t b) noexcept {
+    static void finish(ThreadStages& stages, SharedPool<features, Scalar>& pool, std::int64_t b) noexcept {
         const std::size_t first = pool.first(b);
         for (std::size_t count = pool.count(b); count > 0;) {
             count = stages.advance(pool.records(), first, count);
             count += stages.take_overflow(pool.records(), first + count);
             stages.log().go_ahead();
         }
-        stages.pass_on(pool, b, first, 0);
+        stages.enqueue(pool, b, first, 0);
     }
-    [[nodiscard]] const std::vector<RoundWork>& rounds(std::size_t thread) const override {
+    [[nodiscard]] const std::vector<RoundReport>& rounds(std::size_t thread) const override {
         return stages_[thread]->log().rounds();
     }
     [[nodiscard]] std::span<const ListLevel> lists(std::size_t thread) const override { return stages_[thread]->lists(); }
 
-    std::unique_ptr<SharedPool<needs, Scalar>> pool_;
+    std::unique_ptr<SharedPool<features, Scalar>> pool_;
     std::vector<std::unique_ptr<ThreadStages>> stages_;  ///< by thread
 };
 

@@ -12,10 +12,10 @@
 
 #include <fmt/format.h>
 
-#include "core/engine.h"
-#include "core/error.h"
-#include "core/loop.h"
-#include "core/memory.h"
+#include "core/runtime/engine.h"
+#include "core/base/error.h"
+#include "core/runtime/loop.h"
+#include "core/base/memory.h"
 #include "wavefront/accumulator.h"
 #include "wavefront/capacity.h"
 #include "wavefront/record_stages.h"
@@ -42,7 +42,7 @@ class PoolSession : public RenderSession {
     /// Renders the unit, which has paths.
     virtual RenderReport run(const RenderUnit& unit) = 0;
     /// What a thread logged of the unit.
-    [[nodiscard]] virtual const std::vector<RoundWork>& rounds(std::size_t thread) const = 0;
+    [[nodiscard]] virtual const std::vector<RoundReport>& rounds(std::size_t thread) const = 0;
     [[nodiscard]] virtual std::span<const ListLevel> lists(std::size_t thread) const = 0;
 
     /// Of a session that is made: the settings' threads are those that OpenMP gives.
@@ -84,7 +84,7 @@ class PoolSession : public RenderSession {
         if (path_count(context_.scene, unit) == 0) return {};
         RenderReport report = run(unit);
         for (std::size_t thread = 0; thread < report.threads.size(); ++thread) {  // added up by their number
-            add_each<RoundWork>(report.rounds, rounds(thread));
+            add_each<RoundReport>(report.rounds, rounds(thread));
             add_each<ListLevel>(report.lists, lists(thread));
         }
         return report;
@@ -92,7 +92,7 @@ class PoolSession : public RenderSession {
 
     RenderReport collect() final {
         if (accumulator_->block_count() == 0) return {};  // it adds to the framebuffer itself
-        return run_threads(settings_, [&](ThreadWork&, SampleAudit&) {
+        return run_threads(settings_, [&](ThreadReport&, SampleStatistics&) {
             const double begin = omp_get_wtime();
 #pragma omp for schedule(static) nowait
             for (std::size_t block = 0; block < accumulator_->block_count(); ++block) accumulator_->merge(block);

@@ -3,17 +3,17 @@
 
 namespace raypool::wavefront {
 
-template <SceneNeeds needs, class Scalar>
+template <Features features, class Scalar>
 std::unique_ptr<RenderSession> begin_session(const CompiledScene<Scalar>& scene, const RenderSettings& settings,
                                              const PoolSettings& pool, Framebuffer& framebuffer,
-                                             const StagesMaker<needs, Scalar>& maker) {
+                                             const StagesMaker<features, Scalar>& maker) {
     if (pool.scope == PoolScope::PerThread)
-        return std::make_unique<ThreadPoolSession<needs, Scalar>>(scene, settings, pool, framebuffer, maker);
-    return std::make_unique<SharedPoolSession<needs, Scalar>>(scene, settings, pool, framebuffer, maker);
+        return std::make_unique<ThreadPoolSession<features, Scalar>>(scene, settings, pool, framebuffer, maker);
+    return std::make_unique<SharedPoolSession<features, Scalar>>(scene, settings, pool, framebuffer, maker);
 }
 
-constexpr SceneNeeds kStill = record_needs({});
-constexpr SceneNeeds kMoving = record_needs(kEverything);
+constexpr Features kStill = record_features({});
+constexpr Features kMoving = record_features(kEverything);
 
 template std::unique_ptr<RenderSession> begin_session(const CompiledScene<float>&, const RenderSettings&,
                                                       const PoolSettings&, Framebuffer&,

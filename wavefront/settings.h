@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/engine.h"
+#include "core/runtime/engine.h"
 
 namespace raypool::wavefront {
 

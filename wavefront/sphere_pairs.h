@@ -2,7 +2,7 @@
 /// the exact test runs.
 ///
 /// Of the rays that reach a leaf one in thirty hits a given sphere of it. Tested sphere by sphere, an exact test runs for
-/// a whole register as soon as one of its rays comes near. Here may_meet_sphere() (core/shapes.h) looks at every ray and
+/// a whole register as soon as one of its rays comes near. Here may_meet_sphere() (core/geometry/shapes.h) looks at every ray and
 /// sphere first, and the pairs that pass are collected, whatever their sphere, and tested a register at a time.
 #pragma once
 
@@ -38,14 +38,14 @@ class SpherePairs {
     }
 
     /// Collects the pairs of the rays set in `valid`, whose rows begin at `offset`.
-    template <SceneNeeds needs, class Real, class Work>
+    template <Features features, class Real, class Work>
     RAYPOOL_INLINE void find(const Ray<Real>& ray, const Int<Real>& leaving_id, const Uint32<Real>& offset,
                              unsigned valid, Work& work) {
         const Uint32<Real> first_pair = offset * Uint32<Real>(kShapes);
         for (int i = 0; i < count_; ++i) {
             const Vec3<Real> center = lane_of<Real>(block_.center, i);
             Vec3<Real> toward = vec3<Real>(center[0] - ray.origin[0], center[1] - ray.origin[1], center[2] - ray.origin[2]);
-            if constexpr (needs.motion)
+            if constexpr (features.motion)
                 toward = toward_sphere<Real>(center, lane_of<Real>(block_.motion, i), ray.time, ray.origin);
             const SphereReach<Real> reach{Real(square_[i]), Real(least_[i])};
             const Mask<Real> is_leaving = as_mask<Real>(leaving_id == Int<Real>(block_.id[i]));
@@ -57,7 +57,7 @@ class SpherePairs {
     }
 
     /// The same of a list of rays, which has a register beyond its end.
-    template <SceneNeeds needs, class Real, class Work>
+    template <Features features, class Real, class Work>
     RAYPOOL_INLINE void find_in_list(const Row* rows, const std::uint32_t* list, std::size_t count, Work& work) {
         constexpr std::size_t kRays = kLanes<Real>;
         for (std::size_t first = 0; first < count; first += kRays) {
@@ -67,13 +67,13 @@ class SpherePairs {
             const Ray<Real> ray{columns(row, 0), columns(row, Row::kDirection - Row::kOrigin),
                                 row[Row::kTime - Row::kOrigin]};
             const unsigned valid = first + kRays <= count ? (1U << kRays) - 1 : (1U << (count - first)) - 1;
-            find<needs, Real>(ray, to_int<Real>(row[Row::kLeaving - Row::kOrigin]),
+            find<features, Real>(ray, to_int<Real>(row[Row::kLeaving - Row::kOrigin]),
                               Uint32<Real>(list + first, stdx::element_aligned), valid, work);
         }
     }
 
     /// Tests the pairs exactly and takes the hits that are closer. The pairs are then used up.
-    template <SceneNeeds needs, InBox in_box, class Real>
+    template <Features features, InBox in_box, class Real>
     RAYPOOL_INLINE void meet(const StreamHits<Scalar>& hits) {
         constexpr std::size_t kRays = kLanes<Real>;
         if (filled_ == 0) return;
@@ -90,7 +90,7 @@ class SpherePairs {
             load_rows_at<Row::kColumns, Real>(hits.rows->value, offset, row);
             const Vec3<Real> origin = columns(row, Row::kOrigin);
             Vec3<Real> center = pick3<Real>(block_.center, which);
-            if constexpr (needs.motion)
+            if constexpr (features.motion)
                 center = center_at<Real>(center, pick3<Real>(block_.motion, which), row[Row::kTime]);
             const Mask<Real> is_leaving = row[Row::kLeaving] == pick<kShapes, Real>(id, which);
             const Real t = sphere_distance<Real>(origin, columns(row, Row::kDirection), center,

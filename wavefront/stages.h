@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/engine.h"
-#include "core/loop.h"
-#include "core/shade.h"
+#include "core/runtime/engine.h"
+#include "core/runtime/loop.h"
+#include "core/shading/shade.h"
 #include "wavefront/accumulator.h"
 #include "wavefront/beam.h"
 #include "wavefront/record_stages.h"
@@ -18,9 +18,9 @@
 
 namespace raypool::wavefront {
 
-template <SceneNeeds needs, class Real, class Work, Splitting splitting>
-class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
-    using Base = RecordStages<record_needs(needs), ScalarOf<Real>>;
+template <Features features, class Real, class Work, Splitting splitting>
+class Stages final : public RecordStages<record_features(features), ScalarOf<Real>> {
+    using Base = RecordStages<record_features(features), ScalarOf<Real>>;
     using Base::log_;
     using Base::overflow_;
     using Base::overflow_count_;
@@ -39,7 +39,7 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
           stream_(most_records, tree_depth(context)),
           sort_scratch_(context.pool.sort == Sort::None ? 0 : most_records),
           converter_(context.fixed) {
-        deposits_.reserve(std::max(most_records, kMostDeposits) + kBeamRays + kRays);
+        contributions_.reserve(std::max(most_records, kMostContributions) + kBeamRays + kRays);
     }
 
     /// The memory of one of these.
@@ -47,7 +47,7 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
         return RayStream<Scalar>::bytes(most_records, tree_depth(context)) +
                Records::bytes(most_overflow(context, most_records)) +
                (context.pool.sort == Sort::None ? 0 : most_records * sizeof(double)) +
-               Deposits<Scalar>::bytes(std::max(most_records, kMostDeposits) + kBeamRays + kRays);
+               Contributions<Scalar>::bytes(std::max(most_records, kMostContributions) + kBeamRays + kRays);
     }
 
     void begin() override {
@@ -92,7 +92,7 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
         const std::size_t survivors = shade(records, first, count);
         log_.stop(Stage::Shade, count);
 
-        const std::size_t ends = deposits_.count();
+        const std::size_t ends = contributions_.count();
         accumulate();
         log_.stop(Stage::Accumulate, ends);
         log_.advanced(count, survivors + overflow_count_, (count + kRays - 1) / kRays * kRays);
@@ -131,7 +131,7 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
         permute(stream_.primitive_id(), order, count, scratch);
     }
 
-    /// Collects what ended as deposits and moves the survivors to the front. Returns how many they are.
+    /// Collects what ended as contributions and moves the survivors to the front. Returns how many they are.
     std::size_t shade(Records& records, std::size_t first, std::size_t count) {
         std::size_t survivors = 0;
         for (std::size_t i = 0; i < count; i += kRays) {
@@ -142,22 +142,22 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
         return survivors;
     }
 
-    /// Adds the deposits to the framebuffer.
+    /// Adds the contributions to the framebuffer.
     void accumulate() {
-        context_.accumulator->add(deposits_, converter_, thread_);
-        deposits_.clear();
+        context_.accumulator->add(contributions_, converter_, thread_);
+        contributions_.clear();
     }
 
     RayStream<Scalar>& stream() { return stream_; }
-    [[nodiscard]] std::size_t deposit_count() const { return deposits_.count(); }
+    [[nodiscard]] std::size_t contribution_count() const { return contributions_.count(); }
 
-    void report(ThreadWork& work, SampleAudit& audit) const override {
+    void report(ThreadReport& work, SampleStatistics& statistics) const override {
         work.paths = paths_;
         work.segments = segments_;
         work.box_tests = work_.box_tests;
         work.primitive_tests = work_.primitive_tests;
         work.wait_s = waited_s_;
-        audit = converter_.audit();
+        statistics = converter_.statistics();
     }
     [[nodiscard]] std::span<const ListLevel> lists() const override {
         if constexpr (requires { work_.lists; })
@@ -167,7 +167,7 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
     }
 
   private:
-    static constexpr std::size_t kMostDeposits = 1024;  ///< kept back in the fused camera stage; fits into the L1 cache
+    static constexpr std::size_t kMostContributions = 1024;  ///< kept back in the fused camera stage; fits into the L1 cache
 
     static std::size_t most_overflow(const RenderContext<Scalar>& context, std::size_t most_records) {
         return context.settings.split_depth > 0 ? most_records : 0;
@@ -179,7 +179,7 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
     RAYPOOL_INLINE RayRecord<Real> camera_record(const CameraLanes<Real>& lanes) const {
         RayRecord<Real> record;
         record.ray =
-            camera_ray<needs, Real>(context_.scene.camera, lanes.x, lanes.y, lanes.pixel, lanes.sample, context_.seed);
+            camera_ray<features, Real>(context_.scene.camera, lanes.x, lanes.y, lanes.pixel, lanes.sample, context_.seed);
         record.throughput = vec3<Real>(Real(1), Real(1), Real(1));
         record.key = {lanes.pixel, lanes.sample};
         record.leaving_id = Uint32<Real>(static_cast<std::uint32_t>(kNoPrimitive));
@@ -206,19 +206,19 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
         }
         if constexpr (Simd<Real>) {
             if (most > 1) {
-                closest_hits<needs, Real>(context_.scene, rays, hit, packets, count, work_);
+                closest_hits<features, Real>(context_.scene, rays, hit, packets, count, work_);
             } else {
-                hit[0] = closest_hits<needs, Real>(context_.scene, rays[0],
+                hit[0] = closest_hits<features, Real>(context_.scene, rays[0],
                                                    lanes_before<Real>(static_cast<std::size_t>(count)), work_);
             }
         } else {
-            hit[0] = closest_hits<needs, Real>(context_.scene, rays[0], true, work_);
+            hit[0] = closest_hits<features, Real>(context_.scene, rays[0], true, work_);
         }
         segments_ += count;
         std::size_t written = 0;
         for (int p = 0; p < packets; ++p)
             written += shade(records, target + written, end, record[p], hit[p], active[p]);
-        if (deposits_.count() > kMostDeposits) accumulate();
+        if (contributions_.count() > kMostContributions) accumulate();
         return written;
     }
 
@@ -229,17 +229,17 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
         const unsigned hits = mask_bits(is_hit) & active;
         if (const unsigned misses = active & ~hits; misses != 0) {
             const Vec3<Real> sky = sky_radiance<Real>(context_.scene.sky, record.ray.direction);
-            deposits_.template put<Real>(record.key.pixel, product(record.throughput, sky), misses);
+            contributions_.template put<Real>(record.key.pixel, product(record.throughput, sky), misses);
         }
         if (hits == 0) return 0;
 
         const Int<Real> id = select(is_hit, hit.primitive_id, Int<Real>(0));
-        const Scattered<Real> out = scatter<needs, Real, splitting>(
+        const Scattered<Real> out = scatter<features, Real, splitting>(
             context_.scene, record.ray, hit.t, id, record.throughput, record.key, record.step, context_.seed,
             context_.settings.split_depth, context_.settings.roulette);
-        if constexpr (needs.emissive) {
+        if constexpr (features.emissive) {
             if (const unsigned ends = mask_bits(out.is_emitter) & hits; ends != 0)
-                deposits_.template put<Real>(record.key.pixel, out.throughput, ends);
+                contributions_.template put<Real>(record.key.pixel, out.throughput, ends);
         }
         const Uint32<Real> step = record.step + Uint32<Real>(1U);
         const Mask<Real> is_deepest = from_uint32<Real>(path_step::bounce<Uint32<Real>>(step)) >=
@@ -299,7 +299,7 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
         for (std::size_t i = 0; i < count; ++i) {
             const RayRecord<Scalar> record = records.template load<Scalar>(first + i);
             const Hit<Scalar> hit =
-                closest_hit<needs>(context_.scene, record.ray, static_cast<std::int32_t>(record.leaving_id), work_);
+                closest_hit<features>(context_.scene, record.ray, static_cast<std::int32_t>(record.leaving_id), work_);
             stream_.distance()[i] = hit.t;
             stream_.primitive_id()[i] = static_cast<std::int32_t>(hit.primitive_id);
         }
@@ -315,17 +315,17 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
                 const WideRays<Real> rays = wide_rays<Real>(record.ray, record.leaving_id);
                 const auto lanes = static_cast<int>(std::min<std::size_t>(kRays, count - i));
                 Hit<Real> hit;
-                if constexpr (needs.flat) intersect_all<needs>(context_.scene.planes, rays, lanes, hit, work_);
-                if (!has_pairs) intersect_all<needs>(context_.scene.large_spheres, rays, lanes, hit, work_);
+                if constexpr (features.planar) intersect_all<features>(context_.scene.planes, rays, lanes, hit, work_);
+                if (!has_pairs) intersect_all<features>(context_.scene.large_spheres, rays, lanes, hit, work_);
                 store_row(i, rays, hit);
             }
             if (has_pairs) {
                 for (const auto& block : context_.scene.large_spheres) pair_with_all(block, records, first, count);
             }
-            if constexpr (needs.flat)
-                detail::walk_stream<needs, Real>(context_.scene.quad_tree, stream_, count, context_.pool.intersection,
+            if constexpr (features.planar)
+                detail::walk_stream<features, Real>(context_.scene.quad_tree, stream_, count, context_.pool.intersection,
                                                  work_);
-            detail::walk_stream<needs, Real>(context_.scene.sphere_tree, stream_, count, context_.pool.intersection,
+            detail::walk_stream<features, Real>(context_.scene.sphere_tree, stream_, count, context_.pool.intersection,
                                              work_);
         }
     }
@@ -338,10 +338,10 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
             const RayRecord<Real> record = records.template load<Real>(first + i);
             const unsigned valid = count - i >= kRays ? (1U << kRays) - 1 : (1U << (count - i)) - 1;
             const Uint32<Real> ray = lane_numbers<Real>() + Uint32<Real>(static_cast<std::uint32_t>(i));
-            pairs.template find<needs, Real>(record.ray, signed_ids<Real>(record.leaving_id),
+            pairs.template find<features, Real>(record.ray, signed_ids<Real>(record.leaving_id),
                                              ray * Uint32<Real>(RayRow<Scalar>::kColumns), valid, work_);
         }
-        pairs.template meet<needs, InBox::No, Real>({stream_.rows(), stream_.distance(), stream_.primitive_id()});
+        pairs.template meet<features, InBox::No, Real>({stream_.rows(), stream_.distance(), stream_.primitive_id()});
     }
 
     RAYPOOL_INLINE void store_row(std::size_t i, const WideRays<Real>& rays, const Hit<Real>& hit) requires Simd<Real> {
@@ -367,7 +367,7 @@ class Stages final : public RecordStages<record_needs(needs), ScalarOf<Real>> {
     const RenderContext<Scalar>& context_;
     int thread_;
     RayStream<Scalar> stream_;
-    Deposits<Scalar> deposits_;
+    Contributions<Scalar> contributions_;
     std::vector<double> sort_scratch_;
     SampleConverter converter_;
     Work work_;

@@ -2,10 +2,10 @@
 
 namespace raypool::wavefront {
 
-template StagesMaker<record_needs(kCompiledNeeds[1]), double>
-stages_maker<kCompiledNeeds[1], double, NoWorkCount, Splitting::Off>();
-template StagesMaker<record_needs(kEverything), double>
-stages_maker<kEverything, double, NoWorkCount, Splitting::Off>();
-template StagesMaker<record_needs(kEverything), double> stages_maker<kEverything, double, ListCount, Splitting::On>();
+template StagesMaker<record_features(kCompiledFeatures[1]), double>
+stages_maker<kCompiledFeatures[1], double, NoTestCount, Splitting::Off>();
+template StagesMaker<record_features(kEverything), double>
+stages_maker<kEverything, double, NoTestCount, Splitting::Off>();
+template StagesMaker<record_features(kEverything), double> stages_maker<kEverything, double, ListCount, Splitting::On>();
 
 }  // namespace raypool::wavefront

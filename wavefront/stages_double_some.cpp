@@ -2,7 +2,7 @@
 
 namespace raypool::wavefront {
 
-template StagesMaker<record_needs(kCompiledNeeds[1]), double>
-stages_maker<kCompiledNeeds[1], WideReal<double>, NoWorkCount, Splitting::Off>();
+template StagesMaker<record_features(kCompiledFeatures[1]), double>
+stages_maker<kCompiledFeatures[1], WideReal<double>, NoTestCount, Splitting::Off>();
 
 }  // namespace raypool::wavefront

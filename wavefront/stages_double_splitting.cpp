@@ -2,7 +2,7 @@
 
 namespace raypool::wavefront {
 
-template StagesMaker<record_needs(kEverything), double>
+template StagesMaker<record_features(kEverything), double>
 stages_maker<kEverything, WideReal<double>, ListCount, Splitting::On>();
 
 }  // namespace raypool::wavefront

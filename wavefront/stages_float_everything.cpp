@@ -2,7 +2,7 @@
 
 namespace raypool::wavefront {
 
-template StagesMaker<record_needs(kEverything), float>
-stages_maker<kEverything, WideReal<float>, NoWorkCount, Splitting::Off>();
+template StagesMaker<record_features(kEverything), float>
+stages_maker<kEverything, WideReal<float>, NoTestCount, Splitting::Off>();
 
 }  // namespace raypool::wavefront

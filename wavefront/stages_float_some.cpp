@@ -2,9 +2,9 @@
 
 namespace raypool::wavefront {
 
-template StagesMaker<record_needs(kCompiledNeeds[0]), float>
-stages_maker<kCompiledNeeds[0], WideReal<float>, NoWorkCount, Splitting::Off>();
-template StagesMaker<record_needs(kCompiledNeeds[1]), float>
-stages_maker<kCompiledNeeds[1], WideReal<float>, NoWorkCount, Splitting::Off>();
+template StagesMaker<record_features(kCompiledFeatures[0]), float>
+stages_maker<kCompiledFeatures[0], WideReal<float>, NoTestCount, Splitting::Off>();
+template StagesMaker<record_features(kCompiledFeatures[1]), float>
+stages_maker<kCompiledFeatures[1], WideReal<float>, NoTestCount, Splitting::Off>();
 
 }  // namespace raypool::wavefront

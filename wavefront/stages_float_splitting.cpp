@@ -2,7 +2,7 @@
 
 namespace raypool::wavefront {
 
-template StagesMaker<record_needs(kEverything), float>
+template StagesMaker<record_features(kEverything), float>
 stages_maker<kEverything, WideReal<float>, ListCount, Splitting::On>();
 
 }  // namespace raypool::wavefront

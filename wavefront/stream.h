@@ -58,7 +58,7 @@ namespace detail {
 /// Lists shorter than this are walked ray by ray. From a prototype on triangles, in which the length hardly mattered.
 inline constexpr std::size_t kShortList = 12;
 
-template <SceneNeeds needs, class Real, class Tree, class Work>
+template <Features features, class Real, class Tree, class Work>
 class StreamWalk {
     using S = ScalarOf<Real>;
     using Row = RayRow<S>;
@@ -93,7 +93,7 @@ class StreamWalk {
 
   private:
     void visit_node(std::size_t index, const std::uint32_t* list, std::size_t count, std::uint32_t* free) {
-        const raypool::detail::TreeBounds<needs, Tree> bounds(tree_);
+        const raypool::detail::TreeBounds<features, Tree> bounds(tree_);
         const auto& node = tree_.nodes[index];
         const std::size_t room = count + kRays;  // a register is stored whole behind the last ray
         std::uint32_t* end[kWidth];
@@ -147,8 +147,8 @@ class StreamWalk {
         if constexpr (requires { block.radius; }) {
             if (intersection_ == Intersection::Pairs) {
                 SpherePairs<S> pairs(block, free);
-                pairs.template find_in_list<needs, Real>(hits_.rows, list, count, work_);
-                pairs.template meet<needs, InBox::Yes, Real>(hits_);
+                pairs.template find_in_list<features, Real>(hits_.rows, list, count, work_);
+                pairs.template meet<features, InBox::Yes, Real>(hits_);
                 return;
             }
         }
@@ -165,7 +165,7 @@ class StreamWalk {
             Mask<Real> is_improved(false);
             for_each_shape(block, [&](int i) {
                 work_.count_primitives(static_cast<int>(std::min<std::size_t>(kRays, count - first)));
-                is_improved = is_improved || intersect_lane<needs, InBox::Yes, Real>(block, i, rays, hit);
+                is_improved = is_improved || intersect_lane<features, InBox::Yes, Real>(block, i, rays, hit);
             });
             for (unsigned bits = mask_bits(is_improved); bits != 0; bits &= bits - 1) {
                 const int i = std::countr_zero(bits);
@@ -184,7 +184,7 @@ class StreamWalk {
         const SpreadRay<Boxes> spread(ray, inverse_of_scale<S>(columns(row, Row::kScale)),
                                       static_cast<std::int32_t>(row[Row::kLeaving]));
         Hit<S> hit{hits_.distance[i], hits_.primitive_id[i]};
-        raypool::detail::walk<needs, Boxes>(tree_, spread, hit, work_, child);
+        raypool::detail::walk<features, Boxes>(tree_, spread, hit, work_, child);
         hits_.set(i, hit.t, static_cast<std::int32_t>(hit.primitive_id));
     }
 
@@ -194,14 +194,14 @@ class StreamWalk {
     Work& work_;
 };
 
-template <SceneNeeds needs, class Real, class Tree, class Work>
+template <Features features, class Real, class Tree, class Work>
 void walk_stream(const Tree& tree, RayStream<ScalarOf<Real>>& stream, std::size_t count, Intersection intersection,
                  Work& work) {
     if (tree.nodes.empty() || count == 0) return;
     using Row = RayRow<ScalarOf<Real>>;
     std::uint32_t* list = stream.lists();
     for (std::size_t i = 0; i < count; ++i) list[i] = static_cast<std::uint32_t>(i * Row::kColumns);
-    StreamWalk<needs, Real, Tree, Work>(tree, stream, intersection, work)
+    StreamWalk<features, Real, Tree, Work>(tree, stream, intersection, work)
         .visit(0, list, count, list + count + kLanes<Real>);
 }
 

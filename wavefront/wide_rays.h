@@ -1,12 +1,12 @@
 /// A register of rays against one box or one shape: what packets and streams are made of.
 ///
-/// The mirror image of core/traverse.h, which has one ray against a register of boxes and shapes; the same kernels of
-/// core/shapes.h, so the same bits.
+/// The mirror image of core/geometry/traverse.h, which has one ray against a register of boxes and shapes; the same kernels of
+/// core/geometry/shapes.h, so the same bits.
 #pragma once
 
-#include "core/compiled_scene.h"
-#include "core/shapes.h"
-#include "core/traverse.h"
+#include "core/shading/compiled_scene.h"
+#include "core/geometry/shapes.h"
+#include "core/geometry/traverse.h"
 
 namespace raypool::wavefront {
 
@@ -47,14 +47,14 @@ RAYPOOL_INLINE Vec3<Real> lane_of(const auto(&columns)[3], int lane) {
 }
 
 /// Tests sphere `lane` of a block. Returns the rays for which it is the closest hit now.
-template <SceneNeeds needs, InBox in_box, class Real, class Block>
+template <Features features, InBox in_box, class Real, class Block>
 requires requires(Block b) {
     b.radius;
 }
 RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const WideRays<Real>& rays, Hit<Real>& hit) {
     const std::int32_t id = block.id[lane];
     Vec3<Real> center = lane_of<Real>(block.center, lane);
-    if constexpr (needs.motion) center = center_at<Real>(center, lane_of<Real>(block.motion, lane), rays.ray.time);
+    if constexpr (features.motion) center = center_at<Real>(center, lane_of<Real>(block.motion, lane), rays.ray.time);
     const Mask<Real> is_leaving = as_mask<Real>(rays.leaving_id == Int<Real>(id));
     const Real t =
         sphere_distance<Real>(rays.ray.origin, rays.ray.direction, center, Real(block.radius[lane]), is_leaving);
@@ -72,7 +72,7 @@ RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const Wid
 }
 
 /// The same for a quad, or (without a box) a plane.
-template <SceneNeeds needs, InBox in_box, class Real, class Block>
+template <Features features, InBox in_box, class Real, class Block>
 requires requires(Block b) {
     b.dual_u;
 }
@@ -109,13 +109,13 @@ RAYPOOL_INLINE void for_each_shape(const Block& block, Visit visit) {
 }
 
 /// Shapes that are in no tree. `count` is the number of lanes that matter, for the account of tests.
-template <SceneNeeds needs, class Blocks, class Real, class Work>
+template <Features features, class Blocks, class Real, class Work>
 RAYPOOL_INLINE void intersect_all(const Blocks& blocks, const WideRays<Real>& rays, int count, Hit<Real>& hit,
                                   Work& work) {
     for (const auto& block : blocks) {
         for_each_shape(block, [&](int lane) {
             work.count_primitives(count);
-            intersect_lane<needs, InBox::No, Real>(block, lane, rays, hit);
+            intersect_lane<features, InBox::No, Real>(block, lane, rays, hit);
         });
     }
 }

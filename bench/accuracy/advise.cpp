@@ -9,10 +9,10 @@
 
 #include <fmt/format.h>
 
-#include "core/error.h"
-#include "core/needs.h"
-#include "core/rare_events.h"
-#include "core/settings_text.h"
+#include "core/base/error.h"
+#include "core/scene/features.h"
+#include "core/film/rare_events.h"
+#include "core/runtime/settings_text.h"
 
 namespace raypool::accuracy {
 
@@ -279,8 +279,8 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
     const SceneInBoth pilot_tables(small);
     const Piloting piloting(pilot_tables, options);
     const Configuration deep = trusted_for(pilot_tables.in_double);
-    const SceneNeeds& needs = pilot_tables.in_float.needs;
-    Advice advice{feature_names(needs), scene.width, scene.height, small.width, small.height, kSeeds, {}, {}};
+    const Features& features = pilot_tables.in_float.features;
+    Advice advice{feature_names(features), scene.width, scene.height, small.width, small.height, kSeeds, {}, {}};
 
     // One change at a time.
     std::vector<Values> trusted_images;
@@ -292,7 +292,7 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
                         "the brightest "
                         "has a radiance of {:g}",
                         piloting.sample_count(pilot_spp), pilot_tables.in_double.max_radiance));
-    const std::vector<Change> all = changes(needs.dielectric, deep);
+    const std::vector<Change> all = changes(features.dielectric, deep);
     std::vector<Pilot> pilots;
     for (const Change& change : all) {
         std::vector<Values> images;

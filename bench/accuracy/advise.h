@@ -6,7 +6,7 @@
 /// advice. An error is the root mean square over channels and pixels against the converged image.
 ///
 /// What is promised holds for light that no pilot has found too: a variance, and what a limit of depth cuts off, count
-/// with their upper confidence limits (core/rare_events.h), which know how bright the scene's brightest light is. Where
+/// with their upper confidence limits (core/film/rare_events.h), which know how bright the scene's brightest light is. Where
 /// pilots of a bounded time find too little light for that, nothing is promised.
 ///
 /// Noise falls with the root of the samples; of Sobol points with the slope that was measured. Bias is taken from pairs
@@ -92,7 +92,7 @@ struct Offer {
 };
 
 struct Advice {
-    std::vector<std::string> needs;  ///< what the scene needs
+    std::vector<std::string> features;  ///< what the scene needs
     std::int64_t width = 0, height = 0;
     std::int64_t pilot_width = 0, pilot_height = 0;
     int pilot_seeds = 0;

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
-#include "core/error.h"
-#include "core/scene_hash.h"
+#include "core/base/error.h"
+#include "core/scene/scene_hash.h"
 
 namespace raypool::accuracy {
 
@@ -59,7 +59,7 @@ void Reference::load(std::size_t half) {
         return InputError(fmt::format("{}; remove it, and it is rendered again", why));
     };
     try {
-        RenderSums found = read_sums(file(half));
+        Checkpoint found = read_checkpoint(file(half));
         check_same_render(found, halves_[half]);
         if (found.ranges != std::vector<SampleRange>{{0, found.sample_count()}} || found.sample_count() > half_spp_)
             throw InputError("its samples are not the first ones");
@@ -73,12 +73,12 @@ void Reference::load(std::size_t half) {
 std::int64_t Reference::extend(std::int64_t more) {
     open();
     const std::size_t half = halves_[1].sample_count() < halves_[0].sample_count() ? 1 : 0;
-    RenderSums& sums = halves_[half];
+    Checkpoint& sums = halves_[half];
     const SampleRange next{sums.sample_count(), std::min(sums.sample_count() + more, half_spp_)};
     if (next.first < next.end) {
         render_into(sums.framebuffer, kTrusted, *scene_, {next.first, next.end, kReferenceSeeds[half], threads_});
         sums.ranges = with_range(std::move(sums.ranges), next);
-        if (!folder_.empty()) write_sums(file(half), sums);
+        if (!folder_.empty()) write_checkpoint(file(half), sums);
     }
     return 2 * half_spp_ - halves_[0].sample_count() - halves_[1].sample_count();
 }

@@ -3,7 +3,7 @@
 /// Made a range of samples at a time and kept in a folder, so that it is made once and an interruption loses no more
 /// than a range. A file is found by a key over the scene, the image size, the settings and the image of the first
 /// sample: if the scene, or what light does, changes, the key is another and nothing old is taken for new. Files are
-/// those of sums_file.h. Not thread-safe.
+/// those of checkpoint.h. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 #include "bench/accuracy/configuration.h"
 #include "bench/accuracy/statistics.h"
-#include "core/sums_file.h"
+#include "core/film/checkpoint.h"
 
 namespace raypool::accuracy {
 
@@ -48,7 +48,7 @@ class Reference {
     std::filesystem::path folder_;
     int threads_;
     std::string key_;
-    std::vector<RenderSums> halves_;  ///< two, once open
+    std::vector<Checkpoint> halves_;  ///< two, once open
     std::optional<Halves> means_;
 };
 

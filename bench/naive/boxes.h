@@ -1,10 +1,10 @@
-/// Ray against box as books have it. The box test of the engines is box_interval() (core/shapes.h).
+/// Ray against box as books have it. The box test of the engines is box_interval() (core/geometry/shapes.h).
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/shapes.h"
+#include "core/geometry/shapes.h"
 
 namespace raypool::naive {
 

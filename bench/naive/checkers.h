@@ -1,9 +1,9 @@
-/// Checkers as books have them. The engines' way is cell_parity() (core/textures.h).
+/// Checkers as books have them. The engines' way is cell_parity() (core/shading/textures.h).
 #pragma once
 
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/math/vec.h"
 
 namespace raypool::naive {
 

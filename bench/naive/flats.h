@@ -1,7 +1,7 @@
-/// Planes and quads as books have them. The engines' are plane_distance() and quad_distance() (core/shapes.h).
+/// Planes and quads as books have them. The engines' are plane_distance() and quad_distance() (core/geometry/shapes.h).
 #pragma once
 
-#include "core/shapes.h"
+#include "core/geometry/shapes.h"
 
 namespace raypool::naive {
 

@@ -1,7 +1,7 @@
-/// Moving spheres as one would write them at first. The engines' way is center_at() (core/shapes.h).
+/// Moving spheres as one would write them at first. The engines' way is center_at() (core/geometry/shapes.h).
 #pragma once
 
-#include "core/vec.h"
+#include "core/math/vec.h"
 
 namespace raypool::naive {
 

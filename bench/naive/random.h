@@ -1,9 +1,9 @@
-/// Random numbers as programs often make them. The engines' are random_block() (core/random.h).
+/// Random numbers as programs often make them. The engines' are random_block() (core/math/random.h).
 #pragma once
 
 #include <cstdint>
 
-#include "core/real.h"
+#include "core/math/real.h"
 
 namespace raypool::naive {
 

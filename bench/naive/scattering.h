@@ -1,8 +1,8 @@
 /// Scattering as books have it: directions without a guard, glass with two tests for one question and Schlick's
-/// polynomial in place of Fresnel's equations. The rules of the engines are in core/materials.h.
+/// polynomial in place of Fresnel's equations. The rules of the engines are in core/shading/materials.h.
 #pragma once
 
-#include "core/materials.h"
+#include "core/shading/materials.h"
 
 namespace raypool::naive {
 
@@ -46,7 +46,7 @@ RAYPOOL_INLINE Real plain_fresnel(const Real& cosine, const Real& eta) {
 
 /// Snell's law by the sine of a cosine that rounding may have put above 1: the sine is then not a number.
 template <class Scalar>
-DielectricSplit<Scalar> unclamped_dielectric(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta) {
+FresnelSplit<Scalar> unclamped_dielectric(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta) {
     const Scalar cosine = -dot<Scalar>(direction, normal);
     const Scalar sine_out = eta * std::sqrt(1 - cosine * cosine);
     if (sine_out > 1) return {1, normal};
@@ -58,7 +58,7 @@ DielectricSplit<Scalar> unclamped_dielectric(const Vec3<Scalar>& direction, cons
 /// Total reflection is decided by the sine, and the root is taken of another form of the same number: where the two
 /// disagree it is that of a negative one.
 template <class Scalar>
-DielectricSplit<Scalar> sine_dielectric(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta) {
+FresnelSplit<Scalar> sine_dielectric(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta) {
     const Scalar cosine = std::min(-dot<Scalar>(direction, normal), Scalar(1));
     const Scalar sine = std::sqrt(1 - cosine * cosine);
     if (eta * sine > 1) return {1, normal};

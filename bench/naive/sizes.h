@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/camera.h"
+#include "core/shading/camera.h"
 
 namespace raypool::naive {
 

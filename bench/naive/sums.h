@@ -1,4 +1,4 @@
-/// Sums that round. The engines' are integers (core/framebuffer.h).
+/// Sums that round. The engines' are integers (core/film/framebuffer.h).
 #pragma once
 
 #include <cmath>

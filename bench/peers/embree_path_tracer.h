@@ -8,8 +8,8 @@
 
 #include <cstdint>
 
-#include "core/image.h"
-#include "core/scene.h"
+#include "core/image/image.h"
+#include "core/scene/scene.h"
 
 namespace raypool::peers {
 

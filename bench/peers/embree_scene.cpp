@@ -35,7 +35,7 @@ RTCBounds bounds(const Quad& quad) {
     return bounds(a.cwiseMin(b).cwiseMin(c).cwiseMin(d), a.cwiseMax(b).cwiseMax(c).cwiseMax(d));
 }
 
-FlatShape flat_shape(const Quad& quad) {
+PlanarShape planar_shape(const Quad& quad) {
     const Vector3d normal = quad.edge_u.cross(quad.edge_v);
     const double square = normal.squaredNorm();
     return {to_v3(quad.corner), to_v3(normal.normalized()), to_v3(quad.edge_v.cross(normal) / square),
@@ -43,7 +43,7 @@ FlatShape flat_shape(const Quad& quad) {
 }
 
 /// As docs/scene-format.md leaves open, u runs along the x axis, or along z on a plane that faces x.
-FlatShape flat_shape(const Plane& plane) {
+PlanarShape planar_shape(const Plane& plane) {
     const Vector3d normal = plane.normal.normalized();
     Vector3d u = std::abs(normal.x()) < 0.9 ? Vector3d(1, 0, 0) : Vector3d(0, 0, 1);
     u = (u - u.dot(normal) * normal).normalized();
@@ -71,7 +71,7 @@ void intersect_shape(const RTCIntersectFunctionNArguments* args) {
 
 constexpr auto kIntersectSphere = intersect_shape<SphereShape, test_sphere<RTCRayHit>, test_sphere<PacketRayHit>>;
 constexpr auto kIntersectQuad =
-    intersect_shape<FlatShape, test_flat<Extent::Quad, RTCRayHit>, test_flat<Extent::Quad, PacketRayHit>>;
+    intersect_shape<PlanarShape, test_flat<Extent::Quad, RTCRayHit>, test_flat<Extent::Quad, PacketRayHit>>;
 
 }  // namespace
 
@@ -85,13 +85,13 @@ EmbreeScene::EmbreeScene(const Scene& scene) : textures_(scene.textures) {
     }
     quads_.first_id = static_cast<std::uint32_t>(scene.spheres.size());
     for (const Quad& quad : scene.quads) {
-        quads_.shapes.push_back(flat_shape(quad));
+        quads_.shapes.push_back(planar_shape(quad));
         quads_.bounds.push_back(bounds(quad));
         add_surface(scene, quad.material_id, quads_.shapes.back().normal, 0, {});
     }
     planes_.first_id = quads_.first_id + static_cast<std::uint32_t>(scene.quads.size());
     for (const Plane& plane : scene.planes) {
-        planes_.shapes.push_back(flat_shape(plane));
+        planes_.shapes.push_back(planar_shape(plane));
         add_surface(scene, plane.material_id, planes_.shapes.back().normal, 0, {}, true);
     }
     surfaces_.resize(surfaces_.size() + Surface::kColumns);  // lanes that hit nothing look at row 0
@@ -154,7 +154,7 @@ void EmbreeScene::attach(ShapeTable<Shape>& table, RTCIntersectFunctionN interse
 template <class RayHit, class Mask>
 void EmbreeScene::test_planes(Mask is_active, RayHit& rayhit) const {
     std::uint32_t id = planes_.first_id;
-    for (const FlatShape& plane : planes_.shapes)
+    for (const PlanarShape& plane : planes_.shapes)
         test_flat<Extent::Plane>(plane, id++, kPlaneGeometry, is_active, rayhit);
 }
 

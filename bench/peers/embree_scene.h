@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "bench/peers/numbers.h"
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace raypool::peers {
 
@@ -30,7 +30,7 @@ struct SphereShape {
 };
 
 /// A quad or a plane. (u, v) are the offset from the corner along the dual vectors.
-struct FlatShape {
+struct PlanarShape {
     V3<float> corner, normal, dual_u, dual_v;
 };
 
@@ -95,8 +95,8 @@ class EmbreeScene {
     };
 
     ShapeTable<SphereShape> spheres_;
-    ShapeTable<FlatShape> quads_;
-    ShapeTable<FlatShape> planes_;  ///< not Embree's: bounds stay empty
+    ShapeTable<PlanarShape> quads_;
+    ShapeTable<PlanarShape> planes_;  ///< not Embree's: bounds stay empty
     std::vector<float> surfaces_;
     std::vector<Texture> textures_;
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release<rtcReleaseDevice>> device_;

@@ -11,12 +11,12 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/peers/embree_path_tracer.h"
-#include "core/environment.h"
-#include "core/error.h"
-#include "core/image_file.h"
-#include "core/json_file.h"
-#include "core/scene_reader.h"
-#include "core/text.h"
+#include "core/runtime/environment.h"
+#include "core/base/error.h"
+#include "core/image/image_file.h"
+#include "core/base/json_file.h"
+#include "core/scene/scene_reader.h"
+#include "core/base/text.h"
 
 namespace {
 

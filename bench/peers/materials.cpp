@@ -8,14 +8,16 @@ namespace raypool::peers {
 namespace {
 
 /// Bilinear between texel centres; beyond an edge of the image lies the edge itself or, where it repeats, the opposite.
-V3<float> image_colour(const ImageTexels& image, float u, float v, bool repeats_u, bool repeats_v) {
+V3<float> image_colour(const Image& image, float u, float v, bool repeats_u, bool repeats_v) {
+    const int width = static_cast<int>(image.width);
+    const int height = static_cast<int>(image.height);
     const auto index = [](int at, int size, bool repeats) {
         return repeats ? (at + 2 * size) % size : std::clamp(at, 0, size - 1);
     };
     const auto texel = [&](int x, int y) {
-        x = index(x, image.width, repeats_u);
-        y = index(y, image.height, repeats_v);
-        const float* p = &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+        x = index(x, width, repeats_u);
+        y = index(y, height, repeats_v);
+        const float* p = &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                                          static_cast<std::size_t>(x))];
         return V3<float>{p[0], p[1], p[2]};
     };
@@ -23,8 +25,8 @@ V3<float> image_colour(const ImageTexels& image, float u, float v, bool repeats_
     const auto bounded = [](float at, bool repeats) {
         return repeats ? at - std::floor(at) : std::clamp(at, -1.0F, 2.0F);
     };
-    const float x = bounded(u, repeats_u) * static_cast<float>(image.width) - 0.5F;
-    const float y = bounded(1 - v, repeats_v) * static_cast<float>(image.height) - 0.5F;
+    const float x = bounded(u, repeats_u) * static_cast<float>(width) - 0.5F;
+    const float y = bounded(1 - v, repeats_v) * static_cast<float>(height) - 0.5F;
     const float left = std::floor(x);
     const float top = std::floor(y);
     const int i = static_cast<int>(left);

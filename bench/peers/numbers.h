@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "bench/peers/lanes.h"
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace raypool::peers {
 

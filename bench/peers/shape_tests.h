@@ -54,16 +54,16 @@ enum class Extent : bool { Quad, Plane };
 
 /// Quads that share an edge overlap by a hair, so that no ray slips between them.
 template <Extent extent, class RayHit, class F = FloatOf<RayHit>>
-RAYPOOL_PEER_INLINE void test_flat(const FlatShape& flat, std::uint32_t id, std::uint32_t geometry, MaskOf<F> is_active,
+RAYPOOL_PEER_INLINE void test_flat(const PlanarShape& planar, std::uint32_t id, std::uint32_t geometry, MaskOf<F> is_active,
                                    RayHit& rayhit) {
     constexpr float kHair = 1e-6F;
     const V3<F> direction = direction_of<F>(rayhit);
-    const V3<F> f = origin_of<F>(rayhit) - all_lanes<F>(flat.corner);
-    const V3<F> normal = all_lanes<F>(flat.normal);
+    const V3<F> f = origin_of<F>(rayhit) - all_lanes<F>(planar.corner);
+    const V3<F> normal = all_lanes<F>(planar.normal);
     const F t = -dot(f, normal) / dot(direction, normal);
     const V3<F> p = f + t * direction;
-    const F u = dot(p, all_lanes<F>(flat.dual_u));
-    const F v = dot(p, all_lanes<F>(flat.dual_v));
+    const F u = dot(p, all_lanes<F>(planar.dual_u));
+    const F v = dot(p, all_lanes<F>(planar.dual_v));
     const F t_far = lanes(rayhit.ray.tfar);
     const MaskOf<F> is_leaving = lanes(rayhit.ray.id) == id;
     MaskOf<F> is_met = is_active & (t > 0.0F) & (t < t_far) & !is_leaving;

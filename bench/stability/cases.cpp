@@ -1,5 +1,5 @@
 #include "bench/stability/case.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace raypool::stability {
 

@@ -6,8 +6,8 @@
 
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
-#include "core/coincidence.h"
-#include "core/traverse.h"
+#include "core/geometry/coincidence.h"
+#include "core/geometry/traverse.h"
 
 namespace raypool::stability {
 
@@ -53,7 +53,7 @@ int hit_count(const CompiledScene<Scalar>& scene, Ray<Scalar> ray, std::uint32_t
     constexpr int kMost = 12;
     auto leaving = std::int32_t{kNoPrimitive};
     for (int hits = 0; hits < kMost; ++hits) {
-        NoWorkCount work;
+        NoTestCount work;
         const Hit<Scalar> hit = closest_hit<kEverything>(scene, ray, leaving, work);
         if (hit.primitive_id == kNoPrimitive) return hits;
         const Scattered<Scalar> out =

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "core/engine.h"
-#include "core/image.h"
-#include "core/scene.h"
+#include "core/runtime/engine.h"
+#include "core/image/image.h"
+#include "core/scene/scene.h"
 
 namespace raypool::stability {
 
-/// A variant of the kernels (core/methods.h) with one naive method in the place of ours.
+/// A variant of the kernels (core/geometry/methods.h) with one naive method in the place of ours.
 enum class NaiveVariant : std::uint8_t {
     LeastDistance = 1,  ///< a hit closer than 1e-3 does not count, and a ray does not know what it leaves
     HalfB = 2,          ///< the quadratic of the books

@@ -12,20 +12,20 @@ namespace {
 
 struct Sine {
     template <class Scalar>
-    static DielectricSplit<Scalar> split(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta) {
+    static FresnelSplit<Scalar> split(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta) {
         return naive::sine_dielectric<Scalar>(direction, normal, eta);
     }
 };
 struct Unclamped {
     template <class Scalar>
-    static DielectricSplit<Scalar> split(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta) {
+    static FresnelSplit<Scalar> split(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta) {
         return naive::unclamped_dielectric<Scalar>(direction, normal, eta);
     }
 };
 struct Ours {
     template <class Scalar>
-    static DielectricSplit<Scalar> split(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta) {
-        return dielectric_split<Scalar>(direction, normal, eta);
+    static FresnelSplit<Scalar> split(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta) {
+        return fresnel_split<Scalar>(direction, normal, eta);
     }
 };
 
@@ -48,7 +48,7 @@ double bad_splits(RandomInputs& random, double low_sine, double high_sine, Scala
     std::int64_t bad = 0;
     for (std::int64_t i = 0; i < rays; ++i) {
         const Arrival<Scalar> at(random, random.uniform(low_sine, high_sine));
-        const DielectricSplit<Scalar> split = Glass::template split<Scalar>(at.direction, at.normal, eta);
+        const FresnelSplit<Scalar> split = Glass::template split<Scalar>(at.direction, at.normal, eta);
         bad += std::isfinite(split.reflectance) && split.refracted.allFinite() ? 0 : 1;
     }
     return share(bad, rays);
@@ -76,7 +76,7 @@ struct OurSplit {
     static Scalar reflectance(Scalar cosine, Scalar eta) {
         const Vec3<Scalar> normal = vec3<Scalar>(0, 1, 0);
         const Vec3<Scalar> direction = vec3<Scalar>(std::sqrt(1 - cosine * cosine), -cosine, 0);
-        return dielectric_split<Scalar>(direction, normal, eta).reflectance;
+        return fresnel_split<Scalar>(direction, normal, eta).reflectance;
     }
 };
 /// Against Fresnel's equations in long double. At the critical angle the reflectance has an edge, so there an error of
@@ -111,7 +111,7 @@ Scalar cosine_of(const Arrival<Scalar>& at) {
 template <class Scalar>
 double our_ghost(double cosine, std::int64_t rays) {
     return ghost<Scalar>(cosine, rays, [](const Arrival<Scalar>& at) {
-        const DielectricSplit<Scalar> split = dielectric_split<Scalar>(at.direction, at.normal, Scalar(1));
+        const FresnelSplit<Scalar> split = fresnel_split<Scalar>(at.direction, at.normal, Scalar(1));
         return split.refracted == at.direction ? split.reflectance : Scalar(1);
     });
 }
@@ -124,7 +124,7 @@ double time_glass(std::int64_t calls) {
     double sum = 0;
     for (std::int64_t i = 0; i < calls; ++i) {
         const Arrival<float>& at = arrivals[static_cast<std::size_t>(i) % arrivals.size()];
-        const DielectricSplit<float> split = Glass::template split<float>(at.direction, at.normal, 1 / 1.5F);
+        const FresnelSplit<float> split = Glass::template split<float>(at.direction, at.normal, 1 / 1.5F);
         sum += split.reflectance + split.refracted[0];
     }
     return sum;

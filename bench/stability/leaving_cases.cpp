@@ -5,7 +5,7 @@
 #include "bench/naive/spheres.h"
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
-#include "core/materials.h"
+#include "core/shading/materials.h"
 
 namespace raypool::stability {
 
@@ -83,7 +83,7 @@ double lost_far_side(double radius, std::int64_t rays) {
         const SurfacePoint<Scalar> point = seen_point<Scalar>(random, center, r);
         Vec3<Scalar> arriving = random.direction<Scalar>();
         if (dot<Scalar>(arriving, point.normal) > 0) arriving = -arriving;
-        const Vec3<Scalar> inward = dielectric_split<Scalar>(arriving, point.normal, 1 / Scalar(1.5)).refracted;
+        const Vec3<Scalar> inward = fresnel_split<Scalar>(arriving, point.normal, 1 / Scalar(1.5)).refracted;
         lost += Test::template distance<Scalar>(point, inward, center, r, true) < kInfinity<Scalar> ? 0 : 1;
     }
     return share(lost, rays);

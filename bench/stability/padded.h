@@ -4,7 +4,7 @@
 #include <bit>
 #include <vector>
 
-#include "core/compiled_scene.h"
+#include "core/shading/compiled_scene.h"
 
 namespace raypool::stability {
 

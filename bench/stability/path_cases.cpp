@@ -6,10 +6,10 @@
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
 #include "bench/stability/stack.h"
-#include "core/engine.h"
-#include "core/framebuffer.h"
-#include "core/random.h"
-#include "core/shade.h"
+#include "core/runtime/engine.h"
+#include "core/film/framebuffer.h"
+#include "core/math/random.h"
+#include "core/shading/shade.h"
 
 namespace raypool::stability {
 

@@ -8,7 +8,7 @@
 #include "bench/naive/random.h"
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
-#include "core/random.h"
+#include "core/math/random.h"
 
 namespace raypool::stability {
 

@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "core/shade.h"
-#include "core/shapes.h"
-#include "tests/core/aimed_ray.h"
-#include "tests/core/exact_sphere.h"
+#include "core/shading/shade.h"
+#include "core/geometry/shapes.h"
+#include "tests/core/geometry/aimed_ray.h"
+#include "tests/core/geometry/exact_sphere.h"
 #include "tests/errors.h"
 #include "tests/random_inputs.h"
 
@@ -30,7 +30,7 @@ using Packet = Wide<float, static_cast<int>(stdx::native_simd<float>::size())>;
 template <class Scalar>
 SurfacePoint<Scalar> sphere_point(const Ray<Scalar>& ray, Scalar t, const Vec3<Scalar>& center, Scalar radius) {
     const Scalar row[16] = {center[0], center[1], center[2], radius};
-    return surface_point<SceneNeeds{}, Scalar>(ray, t, row);
+    return surface_point<Features{}, Scalar>(ray, t, row);
 }
 
 /// A surface point that a ray from 10 radii away meets.

@@ -6,7 +6,7 @@
 #include "bench/naive/sizes.h"
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
-#include "core/loop.h"
+#include "core/runtime/loop.h"
 #include "wavefront/engine.h"
 
 namespace raypool::stability {
@@ -55,7 +55,7 @@ double jitter_error(double width, std::int64_t samples) {
     for (std::uint32_t sample = 0; sample < static_cast<std::uint32_t>(samples); ++sample) {
         const Scalar jitter = random_block<Scalar>({0, sample}, 0, RandomPurpose::Film, seed)[0];
         const Vec3<Scalar> d = film == Film::Ours
-                                   ? camera_ray<SceneNeeds{}, Scalar>(camera, x, x, 0, sample, seed).direction
+                                   ? camera_ray<Features{}, Scalar>(camera, x, x, 0, sample, seed).direction
                                    : naive::joined_column<Scalar>(camera, x, jitter);
         const double column = static_cast<double>(d[0]) / -static_cast<double>(d[2]) * width + 0.5 * width;
         errors.add(column - static_cast<double>(x) - static_cast<double>(jitter));
@@ -98,7 +98,7 @@ double split_ours(double splits, std::int64_t) {
     Framebuffer framebuffer(kScene.width, kScene.height, FixedPoint::make(4, kScene.max_radiance));
     const RenderReport report = wavefront::WavefrontEngine(pool).render(kScene, settings, framebuffer);
     std::int64_t most = 0;
-    for (const RoundWork& round : report.rounds) most = std::max(most, std::max(round.records_in, round.records_out));
+    for (const RoundReport& round : report.rounds) most = std::max(most, std::max(round.records_in, round.records_out));
     return share(most, kBatch);
 }
 

@@ -8,7 +8,7 @@
 
 #include <csignal>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "recursive/engine.h"
 #include "recursive/tracer.h"
 
@@ -38,7 +38,7 @@ void* trace(void* argument) {
     RenderSettings settings;
     settings.depth = task.depth;
     if (task.how == Deep::Recursion) {
-        using Tracer = recursive::Tracer<SceneNeeds{}, float, NoWorkCount, Splitting::Off, recursive::Rules::Plain>;
+        using Tracer = recursive::Tracer<Features{}, float, NoTestCount, Splitting::Off, recursive::Rules::Plain>;
         Tracer tracer(task.scene, settings, FixedPoint::make(1, 1));
         tracer.sample<recursive::Form::Recursive>(0, 0, 0);
         return nullptr;

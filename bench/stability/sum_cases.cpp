@@ -8,7 +8,7 @@
 #include "bench/naive/sums.h"
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
-#include "core/framebuffer.h"
+#include "core/film/framebuffer.h"
 
 namespace raypool::stability {
 
@@ -21,7 +21,7 @@ class OurSum {
         : fixed_(FixedPoint::make(terms, greatest)), converter_(fixed_) {}
     void add(float x) { sum_ += converter_.convert<float>(vec3<float>(x, 0, 0))[0]; }
     [[nodiscard]] double value() const { return static_cast<double>(sum_) / fixed_.scale(); }
-    [[nodiscard]] std::int64_t left_out() const { return converter_.audit().non_finite; }
+    [[nodiscard]] std::int64_t left_out() const { return converter_.statistics().non_finite; }
 
   private:
     FixedPoint fixed_;

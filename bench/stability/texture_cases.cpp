@@ -6,7 +6,7 @@
 #include "bench/naive/checkers.h"
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
-#include "core/textures.h"
+#include "core/shading/textures.h"
 
 namespace raypool::stability {
 
@@ -16,7 +16,7 @@ namespace {
 constexpr double kScale = std::numbers::pi;
 
 template <class Scalar>
-Split<Scalar> split_scale() {
+TwoParts<Scalar> split_scale() {
     const auto high = static_cast<Scalar>(kScale);
     return {high, static_cast<Scalar>(kScale - static_cast<double>(high))};
 }
@@ -108,7 +108,7 @@ double time_checker(std::int64_t calls) {
     for (std::int64_t i = 0; i < calls / kLanesOf; ++i) {
         const Packet x(static_cast<float>(i % 4096) - 2048.3F);
         if constexpr (std::same_as<Checker, Ours>) {
-            const Split<float> scale = split_scale<float>();
+            const TwoParts<float> scale = split_scale<float>();
             sum += cell_parity<Packet>(x, {Packet(scale.high), Packet(scale.low)});
         } else if constexpr (std::same_as<Checker, Floored>) {
             sum += naive::floored_parity<Packet>(x, Packet(static_cast<float>(kScale)));

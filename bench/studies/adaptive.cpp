@@ -15,9 +15,9 @@
 #include "bench/studies/replay_ways.h"
 #include "bench/studies/runner.h"
 #include "bench/studies/studies.h"
-#include "core/adaptive.h"
-#include "core/error.h"
-#include "core/scene_reader.h"
+#include "core/runtime/adaptive.h"
+#include "core/base/error.h"
+#include "core/scene/scene_reader.h"
 #include "recursive/engine.h"
 #include "wavefront/engine.h"
 
@@ -111,7 +111,7 @@ class PassLog : public Engine {
         double longest = 0, fair = 0;
         for (const RenderReport& pass : passes_) {
             std::int64_t most = 0;
-            for (const ThreadWork& thread : pass.threads) most = std::max(most, thread.segments);
+            for (const ThreadReport& thread : pass.threads) most = std::max(most, thread.segments);
             longest += static_cast<double>(most);
             fair += static_cast<double>(pass.segments()) / static_cast<double>(pass.threads.size());
         }

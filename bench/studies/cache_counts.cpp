@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/studies/process.h"
-#include "core/environment.h"
+#include "core/runtime/environment.h"
 
 namespace raypool::studies {
 

@@ -43,7 +43,7 @@ const CachegrindCommand& cachegrind_command();
 
 struct Cachegrind {
     CacheCounts rendering;     ///< the wavefront engine, without what it does once at the end of a render
-    CacheCounts accumulating;  ///< of that, adding deposits to the framebuffer
+    CacheCounts accumulating;  ///< of that, adding contributions to the framebuffer
     CacheCounts all;           ///< the whole command, reading and writing too
     std::int64_t segments = 0;
     std::string hash;

@@ -12,8 +12,8 @@
 #include "bench/studies/studies.h"
 #include "bench/studies/truncation.h"
 #include "bench/studies/verdict.h"
-#include "core/error.h"
-#include "core/scene_reader.h"
+#include "core/base/error.h"
+#include "core/scene/scene_reader.h"
 
 namespace raypool::studies {
 

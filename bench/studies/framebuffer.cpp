@@ -10,7 +10,7 @@
 #include "bench/studies/framebuffer_summary.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/studies.h"
-#include "core/settings_text.h"
+#include "core/runtime/settings_text.h"
 #include "wavefront/engine.h"
 #include "wavefront/setting_names.h"
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "bench/studies/process.h"
-#include "core/scene_reader.h"
+#include "core/scene/scene_reader.h"
 
 namespace raypool::studies {
 

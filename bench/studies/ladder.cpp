@@ -11,8 +11,8 @@
 #include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
 #include "bench/studies/verdict.h"
-#include "core/scene_reader.h"
-#include "core/settings_text.h"
+#include "core/scene/scene_reader.h"
+#include "core/runtime/settings_text.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
 
@@ -35,24 +35,24 @@ constexpr bool kIsAvx512 = stdx::native_simd<float>::size() == 16;
 /// Seconds of a stage, all threads and rounds.
 double stage_s(const RenderReport& report, Stage stage) {
     double sum = 0;
-    for (const RoundWork& round : report.rounds) sum += round.stage_s[static_cast<std::size_t>(stage)];
+    for (const RoundReport& round : report.rounds) sum += round.stage_s[static_cast<std::size_t>(stage)];
     return sum;
 }
 
 /// What the columns of kParts are for a pool whose rounds were logged.
-Row parts_of_pool(const RenderReport& report, const SceneNeeds& needs, const wavefront::PoolSettings& pool) {
+Row parts_of_pool(const RenderReport& report, const Features& features, const wavefront::PoolSettings& pool) {
     double records_in = 0;
     double records_out = 0;
     double barrier_s = 0;
-    for (const RoundWork& round : report.rounds) {
+    for (const RoundReport& round : report.rounds) {
         records_in += static_cast<double>(round.records_in);
         records_out += static_cast<double>(round.records_out);
         barrier_s += round.wait_s;
     }
     const double shade_s = stage_s(report, Stage::Shade);
     const double survivors = records_in == 0 ? 0 : std::min(records_out / records_in, 1.0);
-    const double traffic_s = std::min(shade_s, records_in * record_pass_s(needs, pool.width, pool.capacity, survivors));
-    const std::vector<double> waits = by_thread(report, &ThreadWork::wait_s);
+    const double traffic_s = std::min(shade_s, records_in * record_pass_s(features, pool.width, pool.capacity, survivors));
+    const std::vector<double> waits = by_thread(report, &ThreadReport::wait_s);
     const double end_s = std::max(0.0, std::accumulate(waits.begin(), waits.end(), 0.0) - barrier_s);
     return {stage_s(report, Stage::Generate),
             stage_s(report, Stage::Intersect),
@@ -90,7 +90,7 @@ Case split_case(const wavefront::Rung& rung, const std::shared_ptr<const StudySc
         const Measured measured = measure(engine, *scene, settings);
         Row row = render_row(rung.name, engine, *scene, settings, measured);
         row.insert(row.end(), {measured.report.segments(), "on"});
-        for (const Value& part : parts_of_pool(measured.report, scene->compiled.needs, rung.pool)) row.push_back(part);
+        for (const Value& part : parts_of_pool(measured.report, scene->compiled.features, rung.pool)) row.push_back(part);
         return {row};
     };
     return {fmt::format("{}, {} threads, clocks on", rung.name, settings.threads), image_of(*scene, settings), repeats,

@@ -113,7 +113,7 @@ class Load : public Study {
         if (timed.hash != counted.hash) throw WrongImage(way + ": the image differs when tests are counted");
         std::vector<Row> rows;
         for (std::size_t i = 0; i < counted.report.threads.size(); ++i) {
-            const ThreadWork& work = counted.report.threads[i];
+            const ThreadReport& work = counted.report.threads[i];
             rows.push_back(
                 sparse_row(columns(), {{"group", group},
                                        {"way", way},

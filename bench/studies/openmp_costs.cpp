@@ -9,7 +9,7 @@
 
 #include "bench/studies/renders.h"
 #include "bench/studies/statistics.h"
-#include "core/loop.h"
+#include "core/runtime/loop.h"
 
 namespace raypool::studies {
 

@@ -10,9 +10,9 @@
 
 #include <fmt/format.h>
 
-#include "core/error.h"
-#include "core/first_exception.h"
-#include "core/loop.h"
+#include "core/base/error.h"
+#include "core/base/first_exception.h"
+#include "core/runtime/loop.h"
 #include "recursive/tracer.h"
 
 namespace raypool::studies {
@@ -22,7 +22,7 @@ namespace {
 constexpr std::int64_t kMostPaths = std::int64_t{1} << 27;
 
 /// Counts tests, and remembers what had been counted when each segment began.
-struct SegmentLog : WorkCount {
+struct SegmentLog : TestCount {
     std::vector<Tally> begins;
     void begin_segment() { begins.push_back({0, box_tests, primitive_tests}); }
 };
@@ -57,10 +57,10 @@ LineLog record_line(const CompiledScene<float>& scene, const RenderSettings& set
 }
 
 /// Processor time of every `step`th line, by plain rules, as the engine runs them.
-template <SceneNeeds needs>
+template <Features features>
 std::vector<double> time_lines(const CompiledScene<float>& scene, const RenderSettings& settings, std::int64_t step) {
     const FlushDenormals flush;
-    recursive::Tracer<needs, float, NoWorkCount, Splitting::Off, recursive::Rules::Plain> tracer(
+    recursive::Tracer<features, float, NoTestCount, Splitting::Off, recursive::Rules::Plain> tracer(
         scene, settings, FixedPoint::make(settings.end_sample, scene.max_radiance));
     std::vector<double> seconds;
     for (std::int64_t y = 0; y < scene.height; y += step) {
@@ -73,8 +73,8 @@ std::vector<double> time_lines(const CompiledScene<float>& scene, const RenderSe
     return seconds;
 }
 std::vector<double> time_lines(const StudyScene& scene, const RenderSettings& settings, std::int64_t step) {
-    return dispatch_needs(scene.compiled.needs,
-                          [&]<SceneNeeds needs>() { return time_lines<needs>(scene.compiled, settings, step); });
+    return dispatch_features(scene.compiled.features,
+                          [&]<Features features>() { return time_lines<features>(scene.compiled, settings, step); });
 }
 
 /// Least squares through the origin in two variables. Where lines are too few or too noisy for two, in one.

@@ -1,7 +1,7 @@
-/// A scene without any feature of SceneNeeds, but with the shapes and so nearly the work of another: study `needs`.
+/// A scene without any feature of Features, but with the shapes and so nearly the work of another: study `needs`.
 #pragma once
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace raypool::studies {
 

@@ -8,7 +8,7 @@
 #include "bench/studies/pool_summary.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/studies.h"
-#include "core/settings_text.h"
+#include "core/runtime/settings_text.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
 #include "wavefront/setting_names.h"
@@ -90,7 +90,7 @@ Case rounds_case(const Line& line, const std::shared_ptr<const StudyScene>& scen
         std::vector<Row> rows;
         std::int64_t round = 0;
         std::int64_t depth = 0;
-        for (const RoundWork& work : measured.report.rounds) {
+        for (const RoundReport& work : measured.report.rounds) {
             depth = work.records_in == 0 ? 0 : depth + 1;
             ++round;
             if (work.records_in == 0) continue;

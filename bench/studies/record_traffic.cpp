@@ -27,11 +27,11 @@ std::vector<unsigned> survivor_masks(std::size_t registers, double survivors) {
     return masks;
 }
 
-template <SceneNeeds needs, class Real>
+template <Features features, class Real>
 double pass_s(std::size_t capacity, double survivors) {
     constexpr int kPasses = 5;
     constexpr std::size_t kRays = kLanes<Real>;
-    RayColumns<needs, float> records(capacity);
+    RayColumns<features, float> records(capacity);
     const std::vector<unsigned> masks = survivor_masks<Real>((capacity + kRays - 1) / kRays, survivors);
     const std::size_t rounds = 1 + 4096 / capacity;  // of a small pool the clock would see nothing
     std::vector<double> seconds;
@@ -53,9 +53,9 @@ double pass_s(std::size_t capacity, double survivors) {
 
 }  // namespace
 
-double record_pass_s(SceneNeeds needs, wavefront::StageWidth width, std::int64_t capacity, double survivors) {
+double record_pass_s(Features features, wavefront::StageWidth width, std::int64_t capacity, double survivors) {
     using Wide16 = Wide<float, stdx::native_simd<float>::size()>;
-    return dispatch_needs(needs, [&]<SceneNeeds compiled>() {
+    return dispatch_features(features, [&]<Features compiled>() {
         return width == wavefront::StageWidth::Simd
                    ? pass_s<compiled, Wide16>(static_cast<std::size_t>(capacity), survivors)
                    : pass_s<compiled, float>(static_cast<std::size_t>(capacity), survivors);

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/needs.h"
+#include "core/scene/features.h"
 #include "wavefront/settings.h"
 
 namespace raypool::studies {
@@ -11,6 +11,6 @@ namespace raypool::studies {
 /// Seconds for each record of a pool of `capacity`, when all are loaded and a part of them, `survivors` in [0, 1], is
 /// stored at the front of the pool, as the shade stage does, and nothing is computed. One thread; median of a few
 /// passes.
-double record_pass_s(SceneNeeds needs, wavefront::StageWidth width, std::int64_t capacity, double survivors);
+double record_pass_s(Features features, wavefront::StageWidth width, std::int64_t capacity, double survivors);
 
 }  // namespace raypool::studies

@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "bench/studies/studies.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace raypool::studies {
 
@@ -19,7 +19,7 @@ std::vector<std::unique_ptr<Study>> all_studies() {
     studies.push_back(scene_size_study());
     studies.push_back(framebuffer_study());
     studies.push_back(ladder_study());
-    studies.push_back(needs_study());
+    studies.push_back(features_study());
     studies.push_back(depth_study());
     studies.push_back(speed_accuracy_study());
     studies.push_back(adaptive_study());

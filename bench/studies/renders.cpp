@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "bench/studies/statistics.h"
-#include "core/error.h"
-#include "core/scene_reader.h"
-#include "core/settings_text.h"
+#include "core/base/error.h"
+#include "core/scene/scene_reader.h"
+#include "core/runtime/settings_text.h"
 #include "recursive/engine.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
@@ -96,7 +96,7 @@ Row render_row(const std::string& name, const Engine& engine, const StudyScene& 
             scene.compiled.width,
             report.seconds,
             static_cast<double>(report.paths()) / report.seconds * 1e-6,
-            max_over_mean(by_thread(report, &ThreadWork::segments)),
+            max_over_mean(by_thread(report, &ThreadReport::segments)),
             waiting(report),
             measured.hash};
 }

@@ -11,7 +11,7 @@
 #include "bench/studies/replay_ways.h"
 #include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
-#include "core/first_exception.h"
+#include "core/base/first_exception.h"
 #include "wavefront/settings.h"
 
 namespace raypool::studies {
@@ -262,7 +262,7 @@ class ReplayStudy : public Study {
             settings.threads = n;
             const Measured measured = measure(engine, scene, settings);
             const RenderReport& report = measured.report;
-            const std::vector<double> processor = by_thread(report, &ThreadWork::processor_s);
+            const std::vector<double> processor = by_thread(report, &ThreadReport::processor_s);
             rows.push_back(sparse_row(
                 columns(), {{"kind", "real"},
                             {"way", way.name},

@@ -22,7 +22,7 @@ struct ReplaySchedule {
         /// Half of what is left in equal chunks, one for each thread, again and again (Hummel, Schonberg and Flynn,
         /// "Factoring", 1992).
         Factoring,
-        /// Dynamic, one by one, of items that are cut for so many threads (core/balanced_items.h).
+        /// Dynamic, one by one, of items that are cut for so many threads (core/runtime/balanced_items.h).
         Balanced
     };
     Kind kind = Kind::Static;

@@ -12,7 +12,7 @@
 #include "bench/studies/path_costs.h"
 #include "bench/studies/replay_model.h"
 #include "bench/studies/table.h"
-#include "core/settings_text.h"
+#include "core/runtime/settings_text.h"
 
 namespace raypool::studies {
 

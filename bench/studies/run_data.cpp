@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
-#include "core/error.h"
-#include "core/output_file.h"
+#include "core/base/error.h"
+#include "core/base/output_file.h"
 
 namespace raypool::studies {
 

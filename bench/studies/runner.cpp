@@ -11,11 +11,11 @@
 
 #include "bench/studies/report.h"
 #include "bench/studies/run_data.h"
-#include "core/environment.h"
-#include "core/error.h"
-#include "core/json_file.h"
-#include "core/output_file.h"
-#include "core/text.h"
+#include "core/runtime/environment.h"
+#include "core/base/error.h"
+#include "core/base/json_file.h"
+#include "core/base/output_file.h"
+#include "core/base/text.h"
 
 namespace raypool::studies {
 

@@ -12,8 +12,8 @@
 
 #include "bench/studies/run_data.h"
 #include "bench/studies/study.h"
-#include "core/engine.h"
-#include "core/file_lock.h"
+#include "core/runtime/engine.h"
+#include "core/base/file_lock.h"
 
 namespace raypool::studies {
 

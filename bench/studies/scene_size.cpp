@@ -9,8 +9,8 @@
 #include "bench/studies/renders.h"
 #include "bench/studies/scene_size_summary.h"
 #include "bench/studies/studies.h"
-#include "core/scene_reader.h"
-#include "core/settings_text.h"
+#include "core/scene/scene_reader.h"
+#include "core/runtime/settings_text.h"
 #include "wavefront/capacity.h"
 #include "wavefront/engine.h"
 

@@ -10,7 +10,7 @@
 #include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
 #include "bench/studies/verdict.h"
-#include "core/settings_text.h"
+#include "core/runtime/settings_text.h"
 
 namespace raypool::studies {
 

@@ -12,8 +12,8 @@
 #include "bench/studies/renders.h"
 #include "bench/studies/runner.h"
 #include "bench/studies/studies.h"
-#include "core/scene_reader.h"
-#include "core/settings_text.h"
+#include "core/scene/scene_reader.h"
+#include "core/runtime/settings_text.h"
 
 namespace raypool::studies {
 
@@ -223,7 +223,7 @@ class SpeedAccuracy : public Study {
             for (std::int64_t part = 0; part < 2 * ((plan.half_spp() + range - 1) / range); ++part)
                 cases.push_back(reference_case(scene, reference, plan, range, part));
 
-            const std::vector<Configuration> all = configurations(options.depth, scene->in_float.needs.dielectric);
+            const std::vector<Configuration> all = configurations(options.depth, scene->in_float.features.dielectric);
             cases.push_back(bias_case(scene, all, plan));
             for (const Configuration& c : all)
                 for (const std::int64_t spp : plan.spps)

@@ -12,7 +12,7 @@
 #include "bench/studies/renders.h"
 #include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
-#include "core/image_file.h"
+#include "core/image/image_file.h"
 
 namespace raypool::studies {
 

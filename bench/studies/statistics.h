@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "core/engine.h"
+#include "core/runtime/engine.h"
 
 namespace raypool::studies {
 
@@ -57,15 +57,15 @@ inline double coefficient_of_variation(const std::vector<double>& load) {
 
 /// A figure of each thread, as numbers.
 template <class T>
-std::vector<double> by_thread(const RenderReport& report, T ThreadWork::*figure) {
+std::vector<double> by_thread(const RenderReport& report, T ThreadReport::*figure) {
     std::vector<double> values;
-    for (const ThreadWork& thread : report.threads) values.push_back(static_cast<double>(thread.*figure));
+    for (const ThreadReport& thread : report.threads) values.push_back(static_cast<double>(thread.*figure));
     return values;
 }
 
 /// Part of the threads' time that was spent waiting for other threads.
 inline double waiting(const RenderReport& report) {
-    const std::vector<double> waits = by_thread(report, &ThreadWork::wait_s);
+    const std::vector<double> waits = by_thread(report, &ThreadReport::wait_s);
     return std::accumulate(waits.begin(), waits.end(), 0.0) /
            (report.seconds * static_cast<double>(report.threads.size()));
 }

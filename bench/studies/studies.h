@@ -11,7 +11,7 @@ std::unique_ptr<Study> adaptive_study();
 std::unique_ptr<Study> depth_study();
 std::unique_ptr<Study> framebuffer_study();
 std::unique_ptr<Study> ladder_study();
-std::unique_ptr<Study> needs_study();
+std::unique_ptr<Study> features_study();
 std::unique_ptr<Study> pool_study();
 std::unique_ptr<Study> schedules_study();
 std::unique_ptr<Study> load_study();

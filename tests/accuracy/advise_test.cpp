@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/accuracy/reference.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "tests/small_render.h"
 
 namespace raypool::accuracy {

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/error.h"
-#include "core/scene_hash.h"
-#include "tests/core/scratch_folder.h"
+#include "core/base/error.h"
+#include "core/scene/scene_hash.h"
+#include "tests/scratch_folder.h"
 #include "tests/small_render.h"
 
 namespace raypool::accuracy {

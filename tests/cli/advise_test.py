@@ -21,7 +21,7 @@ class Advise(CommandTest):
         self.assertLess(best["rmse_interval"][0], best["rmse"])
         settings = json.loads((self.folder / "stats.json").read_text())["settings"]
         self.assertEqual(settings["spp"], best["spp"])
-        self.assertEqual(advice["needs"], ["flat", "metal"])
+        self.assertEqual(advice["features"], ["planar", "metal"])
         self.assertIn("float instead of double", [change["what"] for change in advice["changes"]])
 
     def test_takes_a_budget_of_time(self):

@@ -225,8 +225,8 @@ class Stats(CommandTest):
         self.assert_kinds({
             "hash": str, "paths": int, "segments": int, "segments_per_path": float, "mpaths_per_s": float,
             "seconds": {"read": float, "compile": float, "render": float, "write": float, "total": float},
-            "audit": {"non_finite": int, "clamped": int, "clamped_energy": float},
-            "needs": [str],
+            "sample_statistics": {"non_finite": int, "clamped": int, "clamped_energy": float},
+            "features": [str],
             "settings": {"scene": str, "width": int, "height": int, "spp": int, "samples": [int], "depth": int,
                          "seed": int, "precision": str, "engine": str, "threads": int, "schedule": str, "grain": str,
                          "count_work": bool},
@@ -253,10 +253,10 @@ class Stats(CommandTest):
         for thread in self.stats("--spp", 1)["threads"]:
             self.assertEqual((thread["box_tests"], thread["primitive_tests"]), (None, None))
 
-    def test_name_what_the_scene_needs(self):
-        self.assertEqual(self.stats("--spp", 1)["needs"], ["flat", "metal"])
+    def test_name_the_features_of_the_scene(self):
+        self.assertEqual(self.stats("--spp", 1)["features"], ["planar", "metal"])
         self.write("scene.json", changed(SCENE, "/shapes/0/material", "glass"))
-        self.assertEqual(self.stats("--spp", 1)["needs"], ["flat", "metal", "dielectric"])
+        self.assertEqual(self.stats("--spp", 1)["features"], ["planar", "metal", "dielectric"])
 
     def test_show_that_openmps_variables_are_obeyed(self):
         environment = {"OMP_NUM_THREADS": "3", "OMP_SCHEDULE": "guided,5"}
@@ -534,7 +534,7 @@ class Diff(CommandTest):
 class Info(CommandTest):
     def test_prints_needs_bytes_and_trees(self):
         text = self.run_well("info").stdout
-        self.assertIn("needs: motion, defocus, metal, fuzz, dielectric, checker\n", text)
+        self.assertIn("features: motion, defocus, metal, fuzz, dielectric, checker\n", text)
         self.assertRegex(text, r"\bray record: \d+ bytes in float, \d+ in double\n")
         self.assertRegex(text, r"\bsphere tree: \d+ nodes \d+ wide, \d+ levels, \d+ leaves holding \d+ ")
         self.assertRegex(self.run_well("info", "scene.json").stdout, r"1 spheres, 1 quads, 1 planes")

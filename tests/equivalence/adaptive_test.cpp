@@ -1,11 +1,11 @@
 /// Adaptive renders are one image too: every engine, thread count, pool and accumulator makes the same passes.
-#include "core/adaptive.h"
+#include "core/runtime/adaptive.h"
 
 #include <gtest/gtest.h>
 
 #include <tuple>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "tests/small_render.h"
 #include "wavefront/engine.h"
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/settings_text.h"
+#include "core/runtime/settings_text.h"
 #include "tests/small_render.h"
 #include "wavefront/engine.h"
 

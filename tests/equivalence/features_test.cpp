@@ -12,30 +12,30 @@ namespace raypool {
 namespace {
 
 /// One set of features compiled into the iterative tracer.
-template <SceneNeeds needs>
+template <Features features>
 Rendered render_with(const CompiledScene<float>& scene) {
     RenderSettings settings;
     settings.end_sample = 2;
     return rendered_by(scene, settings, [&](Framebuffer& framebuffer) {
         return render_whole(
-            *recursive::begin<recursive::Form::Iterative, needs, float, NoWorkCount>(scene, settings, framebuffer),
+            *recursive::begin<recursive::Form::Iterative, features, float, NoTestCount>(scene, settings, framebuffer),
             settings);
     });
 }
 
-constexpr SceneNeeds everything_but(std::size_t feature) {
-    SceneNeeds needs = kEverything;
-    needs.*kSceneFeatures[feature].member = false;
-    return needs;
+constexpr Features everything_but(std::size_t feature) {
+    Features features = kEverything;
+    features.*kFeatureNames[feature].member = false;
+    return features;
 }
 
 using RenderFunction = Rendered (*)(const CompiledScene<float>&);
 
-/// For each feature, in the order of kSceneFeatures, the tracer compiled without it.
+/// For each feature, in the order of kFeatureNames, the tracer compiled without it.
 constexpr auto kRenderWithout = []<std::size_t... feature>(std::index_sequence<feature...>) {
     return std::array<RenderFunction, sizeof...(feature)>{&render_with<everything_but(feature)>...};
 }
-(std::make_index_sequence<kSceneFeatures.size()>());
+(std::make_index_sequence<kFeatureNames.size()>());
 
 const std::vector<std::string> kScenes{"paper",   "furnace",  "mirror_corridor", "glass_stack",
                                        "cornell", "half_sky", "one_sphere",      "textures"};
@@ -43,11 +43,11 @@ const std::vector<std::string> kScenes{"paper",   "furnace",  "mirror_corridor",
 class LeavingOut : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(LeavingOut, WhatASceneLacksChangesNoBit) {
-    const SceneFeature& feature = kSceneFeatures[GetParam()];
+    const FeatureName& feature = kFeatureNames[GetParam()];
     int lacking_count = 0;
     for (const std::string& name : kScenes) {
         const CompiledScene<float> scene = compile<float>(small_scene(name, 24));
-        if (scene.needs.*feature.member) continue;
+        if (scene.features.*feature.member) continue;
         ++lacking_count;
         EXPECT_TRUE(same_image(fmt::format("without_{}_{}", feature.name, name), render_with<kEverything>(scene),
                                kRenderWithout[GetParam()](scene), fmt::format("{} without {}", name, feature.name)));
@@ -56,11 +56,11 @@ TEST_P(LeavingOut, WhatASceneLacksChangesNoBit) {
 }
 
 TEST_P(LeavingOut, WhatASceneNeedsChangesIt) {
-    const SceneFeature& feature = kSceneFeatures[GetParam()];
+    const FeatureName& feature = kFeatureNames[GetParam()];
     int needing_count = 0;
     for (const std::string& name : kScenes) {
         const CompiledScene<float> scene = compile<float>(small_scene(name, 24));
-        if (!(scene.needs.*feature.member) || name == "furnace") continue;  // a furnace shows no material
+        if (!(scene.features.*feature.member) || name == "furnace") continue;  // a furnace shows no material
         ++needing_count;
         EXPECT_NE(kRenderWithout[GetParam()](scene).hash(), render_with<kEverything>(scene).hash())
             << name << " looks the same without " << feature.name;
@@ -68,10 +68,10 @@ TEST_P(LeavingOut, WhatASceneNeedsChangesIt) {
     EXPECT_GT(needing_count, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Features, LeavingOut, testing::Range(std::size_t{0}, kSceneFeatures.size()),
-                         [](const auto& test) { return std::string(kSceneFeatures[test.param].name); });
+INSTANTIATE_TEST_SUITE_P(Features, LeavingOut, testing::Range(std::size_t{0}, kFeatureNames.size()),
+                         [](const auto& test) { return std::string(kFeatureNames[test.param].name); });
 
-TEST(CompiledNeeds, WhichTheEngineChoosesMakeTheImageOfTheFullSet) {
+TEST(CompiledFeatures, WhichTheEngineChoosesMakeTheImageOfTheFullSet) {
     RenderSettings settings;
     settings.end_sample = 2;
     for (const std::string& name : kScenes) {
@@ -120,29 +120,29 @@ TEST(NeutralTwin, OfEveryFeatureIsTheSameImage) {
         return texture;
     };
     using Kind = Material::Kind;
-    std::vector<std::pair<bool SceneNeeds::*, Scene>> twins{
-        {&SceneNeeds::motion, with_hidden({Kind::Diffuse}, solid(), {0, 1, 0})},
-        {&SceneNeeds::metal, with_hidden({Kind::Metal}, solid())},
-        {&SceneNeeds::fuzz, with_hidden({Kind::Metal, 0, 0.5}, solid())},
-        {&SceneNeeds::dielectric, with_hidden({Kind::Dielectric, 0, 0, 1.5}, solid())},
-        {&SceneNeeds::emissive, with_hidden({Kind::Emissive}, solid())},
-        {&SceneNeeds::checker, with_hidden({Kind::Diffuse}, textured(Texture::Kind::Checker3d))},
-        {&SceneNeeds::uv, with_hidden({Kind::Diffuse}, textured(Texture::Kind::CheckerUv))},
+    std::vector<std::pair<bool Features::*, Scene>> twins{
+        {&Features::motion, with_hidden({Kind::Diffuse}, solid(), {0, 1, 0})},
+        {&Features::metal, with_hidden({Kind::Metal}, solid())},
+        {&Features::fuzz, with_hidden({Kind::Metal, 0, 0.5}, solid())},
+        {&Features::dielectric, with_hidden({Kind::Dielectric, 0, 0, 1.5}, solid())},
+        {&Features::emissive, with_hidden({Kind::Emissive}, solid())},
+        {&Features::checker, with_hidden({Kind::Diffuse}, textured(Texture::Kind::Checker3d))},
+        {&Features::uv, with_hidden({Kind::Diffuse}, textured(Texture::Kind::CheckerUv))},
     };
     // A quad below ground, and a lens whose radius is zero in float; the plane of focus is where a pinhole's film is.
-    twins.emplace_back(&SceneNeeds::flat, plain_scene()).second.quads.push_back({{0, -20, 0}, {1, 0, 0}, {0, 1, 0}, 0});
-    CameraDescription& lens = twins.emplace_back(&SceneNeeds::defocus, plain_scene()).second.camera;
+    twins.emplace_back(&Features::planar, plain_scene()).second.quads.push_back({{0, -20, 0}, {1, 0, 0}, {0, 1, 0}, 0});
+    CameraDescription& lens = twins.emplace_back(&Features::defocus, plain_scene()).second.camera;
     lens.defocus_angle_degrees = 1e-60;
     lens.focus_distance = 1;
 
     const Rendered plain = render_with<kEverything>(compile<float>(plain_scene()));
     for (const auto& twin : twins) {
-        bool SceneNeeds::*feature = twin.first;
-        const auto named = std::find_if(kSceneFeatures.begin(), kSceneFeatures.end(),
-                                        [&](const SceneFeature& f) { return f.member == feature; });
+        bool Features::*feature = twin.first;
+        const auto named = std::find_if(kFeatureNames.begin(), kFeatureNames.end(),
+                                        [&](const FeatureName& f) { return f.member == feature; });
         const CompiledScene<float> compiled = compile<float>(twin.second);
-        EXPECT_FALSE(compile<float>(plain_scene()).needs.*feature);
-        EXPECT_TRUE(compiled.needs.*feature) << named->name;
+        EXPECT_FALSE(compile<float>(plain_scene()).features.*feature);
+        EXPECT_TRUE(compiled.features.*feature) << named->name;
         EXPECT_TRUE(same_image(fmt::format("twin_{}", named->name), plain, render_with<kEverything>(compiled),
                                fmt::format("a neutral {}", named->name)));
     }

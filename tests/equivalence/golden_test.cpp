@@ -1,5 +1,5 @@
 // The committed scenes still make the images that they made when golden_hashes.json was written: on any compiler and
-// for any instruction set. Where an image had to change, raise kImageVersion (core/sums_file.h), write the hashes and
+// for any instruction set. Where an image had to change, raise kImageVersion (core/film/checkpoint.h), write the hashes and
 // pictures anew, look at the pictures, and say in the change why:
 //
 //     RAYPOOL_UPDATE_GOLDEN=1 ctest --preset release --tests-regex Golden
@@ -13,7 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/sums_file.h"
+#include "core/film/checkpoint.h"
 #include "tests/equivalence/same_image.h"
 
 namespace raypool {
@@ -46,7 +46,7 @@ void update(const std::string& scene_name, const Rendered& in_float, const Rende
     const nlohmann::json committed = hashes.value(scene_name, nlohmann::json::object());
     if (committed.value("float", "") == made["float"] && committed.value("double", "") == made["double"]) return;
     ASSERT_LT(committed.value("image_version", 0), kImageVersion)
-        << "checkpoints of before and of after must differ: raise kImageVersion (core/sums_file.h)";
+        << "checkpoints of before and of after must differ: raise kImageVersion (core/film/checkpoint.h)";
     hashes[scene_name] = std::move(made);
     std::ofstream(kFolder / "golden_hashes.json") << hashes.dump(2) << "\n";
     std::filesystem::create_directories(kFolder / "golden");

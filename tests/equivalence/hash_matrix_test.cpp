@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/settings_text.h"
+#include "core/runtime/settings_text.h"
 #include "tests/equivalence/same_image.h"
 
 namespace raypool {
@@ -69,8 +69,8 @@ template <class Scalar>
 void check_matrix(const MatrixCase& test, const std::string& file_name) {
     const CompiledScene<Scalar> scene = compile<Scalar>(small_scene(test.scene, test.width, test.height));
     const Rendered expected = render(kIterative, scene, settings_of(test));
-    EXPECT_EQ(expected.report.audit.non_finite, 0);
-    EXPECT_EQ(expected.report.audit.clamped, 0);
+    EXPECT_EQ(expected.report.statistics.non_finite, 0);
+    EXPECT_EQ(expected.report.statistics.clamped, 0);
     for (const Engine* engine : kEngines) {
         for_every_loop(settings_of(test), [&](const RenderSettings& settings) {
             const Rendered got = render(*engine, scene, settings);
@@ -153,13 +153,13 @@ TEST_P(OneImage, CountsTheSameWorkInAnyLoopAndCountingChangesNoBit) {
     const CompiledScene<float> scene = compile<float>(small_scene(GetParam(), 16));
     RenderSettings settings;
     const Rendered uncounted = render(kIterative, scene, settings);
-    EXPECT_EQ(uncounted.report.total(&ThreadWork::box_tests), 0);
-    EXPECT_EQ(uncounted.report.total(&ThreadWork::primitive_tests), 0);
+    EXPECT_EQ(uncounted.report.total(&ThreadReport::box_tests), 0);
+    EXPECT_EQ(uncounted.report.total(&ThreadReport::primitive_tests), 0);
 
     settings.count_work = true;
     const Rendered counted = render(kIterative, scene, settings);
     EXPECT_TRUE(same_image("counted_" + GetParam(), uncounted, counted, "counting"));
-    EXPECT_GE(counted.report.total(&ThreadWork::primitive_tests), counted.report.segments());
+    EXPECT_GE(counted.report.total(&ThreadReport::primitive_tests), counted.report.segments());
     for (const Engine* engine : kEngines) {
         for (const LoopSchedule schedule : {LoopSchedule{LoopSchedule::Kind::Static, 1},
                                             LoopSchedule{LoopSchedule::Kind::Tasks, 0}, LoopSchedule{}}) {
@@ -168,7 +168,7 @@ TEST_P(OneImage, CountsTheSameWorkInAnyLoopAndCountingChangesNoBit) {
                 settings.threads = threads;
                 const RenderReport report = render(*engine, scene, settings).report;
                 EXPECT_EQ(report.segments(), counted.report.segments());
-                for (const auto figure : {&ThreadWork::box_tests, &ThreadWork::primitive_tests})
+                for (const auto figure : {&ThreadReport::box_tests, &ThreadReport::primitive_tests})
                     EXPECT_EQ(report.total(figure), counted.report.total(figure)) << describe(*engine, settings);
             }
         }

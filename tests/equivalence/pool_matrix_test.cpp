@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "tests/equivalence/same_image.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
@@ -152,7 +152,7 @@ void expect_one_image_of_all_rungs(const PoolCase& test) {
                 settings.roulette = roulette;
                 settings.split_depth = split_depth;
                 const Rendered expected = render(recursive::RecursiveEngine(), scene, settings);
-                EXPECT_EQ(expected.report.audit.clamped, 0);
+                EXPECT_EQ(expected.report.statistics.clamped, 0);
                 settings.threads = 3;
                 for (const Rung& rung : ladder(settings.threads)) {
                     const Rendered got = render(WavefrontEngine(rung.pool), scene, settings);

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "core/image_diff.h"
-#include "core/image_file.h"
+#include "core/image/image_diff.h"
+#include "core/image/image_file.h"
 #include "tests/small_render.h"
 
 namespace raypool {

@@ -6,7 +6,7 @@
 #include <exception>
 #include <new>
 
-#include "core/image_codecs.h"
+#include "core/image/image_codecs.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "core/compiled_scene.h"
-#include "core/error.h"
-#include "core/scene_parser.h"
+#include "core/shading/compiled_scene.h"
+#include "core/base/error.h"
+#include "core/scene/scene_parser.h"
 #include "recursive/engine.h"
 #include "tests/fuzz/fuzz_target.h"
 
@@ -25,7 +25,7 @@ void render_a_little(Scene scene) {
     settings.depth = 4;
     Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, compiled.max_radiance));
     const RenderReport report = recursive::IterativeEngine().render(compiled, settings, framebuffer);
-    require(report.audit.non_finite == 0, "a scene within its ranges has finite samples");
+    require(report.statistics.non_finite == 0, "a scene within its ranges has finite samples");
 }
 
 }  // namespace

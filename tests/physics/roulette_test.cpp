@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/shade.h"
+#include "core/shading/shade.h"
 #include "tests/physics/agreement.h"
 #include "tests/physics/test_scene.h"
 
@@ -87,7 +87,7 @@ TYPED_TEST(Roulette, GivesTheRadianceOfAnIntegratingSphereAtEveryDepth) {
         for (const Sampler sampler : {Sampler::Independent, Sampler::Sobol}) {
             const Rendered played = render_with<TypeParam>(sphere.scene, true, 4, depth, 0, sampler);
             EXPECT_TRUE(mean_agrees(pixel_values(played), IntegratingSphere::radiance(depth))) << depth;
-            EXPECT_EQ(played.report.audit.clamped, 0);
+            EXPECT_EQ(played.report.statistics.clamped, 0);
             if (depth < 50) continue;
             const Rendered whole = render_with<TypeParam>(sphere.scene, false, 4, depth, 0, sampler);
             EXPECT_LT(played.report.segments(), 0.98 * static_cast<double>(whole.report.segments()));

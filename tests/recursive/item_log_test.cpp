@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/balanced_items.h"
-#include "core/error.h"
+#include "core/runtime/balanced_items.h"
+#include "core/base/error.h"
 #include "tests/small_render.h"
 #include "tests/trace_spans.h"
 #include "wavefront/engine.h"
@@ -100,8 +100,8 @@ TEST(PixelCosts, AddUpToTheReportOfTheRenderWhateverTheLoop) {
                         EXPECT_EQ(got.hash(), expected);
                         const std::int64_t total = cost == Cost::Segments
                                                        ? got.report.segments()
-                                                       : got.report.total(&ThreadWork::box_tests) +
-                                                             got.report.total(&ThreadWork::primitive_tests);
+                                                       : got.report.total(&ThreadReport::box_tests) +
+                                                             got.report.total(&ThreadReport::primitive_tests);
                         EXPECT_GT(total, 0);
                         EXPECT_EQ(std::accumulate(image.values.begin(), image.values.end(), std::int64_t{0}), total);
                         if (first.empty()) first = image.values;

@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace raypool::studies {
 namespace {
@@ -27,8 +27,8 @@ TEST(PathCosts, AddUpToWhatTheEngineCounts) {
     EXPECT_EQ(static_cast<std::int64_t>(costs.first.size()), report.paths() + 1);
     const Tally all = costs.tally(0, report.paths());
     EXPECT_EQ(all.segments, report.segments());
-    EXPECT_EQ(all.box_tests, report.total(&ThreadWork::box_tests));
-    EXPECT_EQ(all.primitive_tests, report.total(&ThreadWork::primitive_tests));
+    EXPECT_EQ(all.box_tests, report.total(&ThreadReport::box_tests));
+    EXPECT_EQ(all.primitive_tests, report.total(&ThreadReport::primitive_tests));
 }
 
 TEST(PathCosts, OfTheItemsOfAnyGrainAreAllThereIs) {

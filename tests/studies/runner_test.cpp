@@ -12,8 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/error.h"
-#include "tests/core/scratch_folder.h"
+#include "core/base/error.h"
+#include "tests/scratch_folder.h"
 
 namespace raypool::studies {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "bench/studies/registry.h"
 #include "bench/studies/scene_size_summary.h"
-#include "core/engine.h"
+#include "core/runtime/engine.h"
 
 namespace raypool::studies {
 namespace {

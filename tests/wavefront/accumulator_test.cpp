@@ -18,19 +18,19 @@ constexpr std::int64_t kWidth = 5;
 constexpr std::int64_t kHeight = 3;
 constexpr std::size_t kPixels = kWidth * kHeight;
 constexpr int kThreads = 4;
-constexpr std::size_t kDeposits = 8192;
+constexpr std::size_t kContributions = 8192;
 constexpr double kMostRadiance = 1000;
 constexpr std::int64_t kBefore = 12345;  ///< what every sum of the framebuffer holds at first
 
-struct Deposit {
+struct Contribution {
     std::uint32_t pixel;
     Vec3<float> radiance;
 };
 
-std::vector<Deposit> deposits(std::uint64_t seed) {
+std::vector<Contribution> contributions(std::uint64_t seed) {
     RandomInputs random(seed);
-    std::vector<Deposit> all;
-    for (std::size_t i = 0; i < kDeposits; ++i) {
+    std::vector<Contribution> all;
+    for (std::size_t i = 0; i < kContributions; ++i) {
         Vec3<float> radiance;
         for (int k = 0; k < 3; ++k) radiance[k] = static_cast<float>(std::exp(random.uniform(-12, 6)));
         all.push_back({static_cast<std::uint32_t>(random.below(kPixels)), radiance});
@@ -39,7 +39,7 @@ std::vector<Deposit> deposits(std::uint64_t seed) {
 }
 
 Framebuffer framebuffer() {
-    Framebuffer out(kWidth, kHeight, FixedPoint::make(kDeposits, kMostRadiance));
+    Framebuffer out(kWidth, kHeight, FixedPoint::make(kContributions, kMostRadiance));
     for (std::int64_t& sum : out.sums()) sum = kBefore;
     return out;
 }
@@ -48,16 +48,16 @@ std::vector<std::int64_t> sums_of(const Framebuffer& framebuffer) {
     return {framebuffer.sums().begin(), framebuffer.sums().end()};
 }
 
-std::vector<std::int64_t> expected_sums(const std::vector<Deposit>& all) {
+std::vector<std::int64_t> expected_sums(const std::vector<Contribution>& all) {
     Framebuffer out = framebuffer();
     SampleConverter converter(out.fixed_point());
-    for (const Deposit& deposit : all) out.add(deposit.pixel, converter.convert(deposit.radiance));
+    for (const Contribution& contribution : all) out.add(contribution.pixel, converter.convert(contribution.radiance));
     return sums_of(out);
 }
 
-/// All threads at once add to `accumulator`, a few deposits at a time, in an order made by `seed`. With `owned` each
+/// All threads at once add to `accumulator`, a few contributions at a time, in an order made by `seed`. With `owned` each
 /// thread adds what belongs to its own pixels, otherwise whatever comes.
-void add_all(AccumulatorBase<float>& accumulator, const FixedPoint& fixed, const std::vector<Deposit>& all,
+void add_all(AccumulatorBase<float>& accumulator, const FixedPoint& fixed, const std::vector<Contribution>& all,
              std::uint64_t seed, bool owned) {
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -69,12 +69,12 @@ void add_all(AccumulatorBase<float>& accumulator, const FixedPoint& fixed, const
         const int thread = omp_get_thread_num();
         const auto threads = static_cast<std::size_t>(omp_get_num_threads());
         SampleConverter converter(fixed);
-        Deposits<float> some;
+        Contributions<float> some;
         some.reserve(64);
         for (std::size_t i = 0; i < order.size(); ++i) {
-            const Deposit& deposit = all[order[i]];
-            if ((owned ? deposit.pixel : i) % threads != static_cast<std::size_t>(thread)) continue;
-            some.put<float>(deposit.pixel, deposit.radiance, 1);
+            const Contribution& contribution = all[order[i]];
+            if ((owned ? contribution.pixel : i) % threads != static_cast<std::size_t>(thread)) continue;
+            some.put<float>(contribution.pixel, contribution.radiance, 1);
             if (some.count() < 64) continue;
             accumulator.add(some, converter, thread);
             some.clear();
@@ -86,7 +86,7 @@ void add_all(AccumulatorBase<float>& accumulator, const FixedPoint& fixed, const
 class Exact : public testing::TestWithParam<Accumulator> {};
 
 TEST_P(Exact, SumsDoNotDependOnOrderNorOnContention) {
-    const std::vector<Deposit> all = deposits(1);
+    const std::vector<Contribution> all = contributions(1);
     const std::vector<std::int64_t> expected = expected_sums(all);
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
         Framebuffer out = framebuffer();
@@ -101,13 +101,13 @@ TEST_P(Exact, SumsLeaveBadSamplesOutWholeAndAccountForThem) {
     Framebuffer out = framebuffer();
     const auto accumulator = make_accumulator<float>(GetParam(), out, 1);
     SampleConverter converter(out.fixed_point());
-    Deposits<float> some;
+    Contributions<float> some;
     some.reserve(2);
     some.put<float>(2, vec3<float>(1, std::numeric_limits<float>::quiet_NaN(), 1), 1);
     some.put<float>(3, vec3<float>(1, 1, std::numeric_limits<float>::infinity()), 1);
     accumulator->add(some, converter, 0);
     merge_all(*accumulator);
-    EXPECT_EQ(converter.audit().non_finite, 2);
+    EXPECT_EQ(converter.statistics().non_finite, 2);
     EXPECT_EQ(sums_of(out), sums_of(framebuffer()));
 }
 
@@ -119,7 +119,7 @@ class Rounded : public testing::TestWithParam<std::pair<Accumulator, double>> {}
 
 TEST_P(Rounded, SumsAreCloseToTheExactOnesAndReachTheFramebufferInTheEnd) {
     const auto [kind, tolerance] = GetParam();
-    const std::vector<Deposit> all = deposits(2);
+    const std::vector<Contribution> all = contributions(2);
     const std::vector<std::int64_t> expected = expected_sums(all);
     Framebuffer out = framebuffer();
     const auto accumulator = make_accumulator<float>(kind, out, kThreads);
@@ -166,10 +166,10 @@ TEST(Accumulators, SayHowMuchMemoryTheyTakeBesideTheFramebuffer) {
     EXPECT_EQ(bytes(Accumulator::AtomicDouble), 3 * kPixels * sizeof(double));
 }
 
-TEST(Deposits, KeepTheLanesAskedForInOrder) {
+TEST(Contributions, KeepTheLanesAskedForInOrder) {
     using Real = Wide<float, stdx::native_simd<float>::size()>;
     RandomInputs random(4);
-    Deposits<float> all;
+    Contributions<float> all;
     constexpr int kRegisters = 20;
     all.reserve(kRegisters * kLanes<Real>);
     std::vector<std::uint32_t> expected;

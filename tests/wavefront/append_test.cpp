@@ -17,8 +17,8 @@ namespace {
 
 using test::RandomInputs;
 
-constexpr SceneNeeds kNeeds{};
-using Records = RayColumns<kNeeds, float>;
+constexpr Features kFeatures{};
+using Records = RayColumns<kFeatures, float>;
 using Record = RayRecord<float>;
 
 struct Case {
@@ -65,7 +65,7 @@ class Rounds {
           threads_(threads),
           refill_(refill),
           stage_(stage),
-          pool_(make_shared_pool<kNeeds, float>(append, test.capacity, test.batch, test.split_depth, threads)),
+          pool_(make_shared_pool<kFeatures, float>(append, test.capacity, test.batch, test.split_depth, threads)),
           camera_(paths) {
         outcome_.ends.resize(paths);
     }
@@ -98,15 +98,15 @@ class Rounds {
         std::size_t overflow_count;
 
         void treat(std::int64_t b, bool takes_camera) {
-            SharedPool<kNeeds, float>& pool = *rounds.pool_;
+            SharedPool<kFeatures, float>& pool = *rounds.pool_;
             Records& records = pool.records();
             std::size_t survivors = 0;
             for (std::size_t i = 0; i < pool.count(b); ++i)
                 survivors += advance(records.load<float>(pool.first(b) + i), records, pool.first(b) + survivors);
-            std::size_t end = pool.keep(b, pool.first(b), survivors, overflow, std::exchange(overflow_count, 0));
+            std::size_t end = pool.enqueue(b, pool.first(b), survivors, overflow, std::exchange(overflow_count, 0));
 
-            for (std::size_t room = takes_camera ? pool.room(b) : 0; room > 0;) {
-                const PathCounter::Part part = rounds.camera_.take(std::min<std::size_t>(room, 64));
+            for (std::size_t free_slots = takes_camera ? pool.free_slots(b) : 0; free_slots > 0;) {
+                const PathCounter::Part part = rounds.camera_.take(std::min<std::size_t>(free_slots, 64));
                 if (part.count == 0) break;
                 std::size_t made = 0;
                 for (std::int64_t i = 0; i < part.count; ++i) {
@@ -121,8 +121,8 @@ class Rounds {
                         ++made;
                     }
                 }
-                room -= std::min(room, made + overflow_count);
-                end = pool.keep(b, end, made, overflow, std::exchange(overflow_count, 0));
+                free_slots -= std::min(free_slots, made + overflow_count);
+                end = pool.enqueue(b, end, made, overflow, std::exchange(overflow_count, 0));
                 if (end > pool.first(b) + pool.batch()) std::atomic_ref(rounds.outcome_.is_within_batches) = false;
             }
         }
@@ -163,7 +163,7 @@ class Rounds {
     int threads_;
     Refill refill_;
     CameraStage stage_;
-    std::unique_ptr<SharedPool<kNeeds, float>> pool_;
+    std::unique_ptr<SharedPool<kFeatures, float>> pool_;
     PathCounter camera_;
     Outcome outcome_;
 };

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "tests/small_render.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
@@ -37,9 +37,9 @@ Rendered render_recursive(const CompiledScene<float>& scene, const RenderSetting
     return render(recursive::IterativeEngine(), scene, settings);
 }
 
-std::int64_t sum(const RenderReport& report, std::int64_t RoundWork::*figure) {
+std::int64_t sum(const RenderReport& report, std::int64_t RoundReport::*figure) {
     std::int64_t total = 0;
-    for (const RoundWork& round : report.rounds) total += round.*figure;
+    for (const RoundReport& round : report.rounds) total += round.*figure;
     return total;
 }
 
@@ -85,9 +85,9 @@ TEST_P(Report, CountsTheSegmentsOfRecursionAndItsRoundsAddUpToThem) {
             EXPECT_EQ(report.paths(), 2 * scene.pixel_count());
 
             const std::int64_t in_registers = variant.pool.camera != CameraStage::Staged ? report.paths() : 0;
-            EXPECT_EQ(sum(report, &RoundWork::records_in), report.segments() - in_registers);
-            EXPECT_LE(sum(report, &RoundWork::records_out), sum(report, &RoundWork::records_in));
-            for (const RoundWork& round : report.rounds) {
+            EXPECT_EQ(sum(report, &RoundReport::records_in), report.segments() - in_registers);
+            EXPECT_LE(sum(report, &RoundReport::records_out), sum(report, &RoundReport::records_in));
+            for (const RoundReport& round : report.rounds) {
                 EXPECT_LE(round.records_out, round.records_in);
                 EXPECT_GE(round.lanes, round.records_in);
                 if (variant.pool.width == StageWidth::Scalar) {
@@ -109,10 +109,10 @@ TEST_P(Report, CountsTheTestsOfRecursionWhereRaysAreTracedOneByOne) {
     const CompiledScene<float> scene = compile<float>(small_scene(GetParam(), 24));
     const Rendered expected = render_recursive(scene, settings_of(1, 50));
     const Rendered got = render_pool(scene, settings_of(1, 50, 2), shared_pool(300));
-    for (const auto figure : {&ThreadWork::box_tests, &ThreadWork::primitive_tests})
+    for (const auto figure : {&ThreadReport::box_tests, &ThreadReport::primitive_tests})
         EXPECT_EQ(got.report.total(figure), expected.report.total(figure));
     const Rendered in_streams = render_pool(scene, settings_of(1, 50), PoolSettings{});
-    EXPECT_GE(in_streams.report.total(&ThreadWork::primitive_tests), in_streams.report.segments() / 2);
+    EXPECT_GE(in_streams.report.total(&ThreadReport::primitive_tests), in_streams.report.segments() / 2);
 }
 
 TEST_P(Report, CountsTheListsOfEachLevel) {
@@ -142,7 +142,7 @@ TEST_P(Report, CountsTheListsOfEachLevel) {
             EXPECT_LE(at.rays, 8 * (lists[level - 1].rays - lists[level - 1].single_rays));
         }
         EXPECT_GT(entered, 0);
-        EXPECT_LE(entered, report.total(&ThreadWork::box_tests));
+        EXPECT_LE(entered, report.total(&ThreadReport::box_tests));
     }
     for (const ListLevel& level : render_pool(scene, settings_of(1, 50), shared_pool(300)).report.lists)
         EXPECT_EQ(level.lists, 0) << "of rays that are traced one by one";
@@ -151,7 +151,7 @@ TEST_P(Report, CountsTheListsOfEachLevel) {
 TEST_P(Report, ShowsTheRoundsOfAPoolThatTakesAllPathsAtOnceAsTheBouncesOfAllPaths) {
     const CompiledScene<float> scene = compile<float>(small_scene(GetParam(), 24));
     const Rendered got = render_pool(scene, settings_of(2, 50, 2), shared_pool(2 * scene.pixel_count()));
-    const std::vector<RoundWork>& rounds = got.report.rounds;
+    const std::vector<RoundReport>& rounds = got.report.rounds;
     ASSERT_GE(rounds.size(), 2U);
     ASSERT_LE(rounds.size(), 51U);
     EXPECT_EQ(rounds[0].records_in, 0) << "the first round only takes in camera paths";
@@ -170,7 +170,7 @@ TEST_P(Report, IsOfOneSegmentAPathAtDepthOneAndOfNoneAtDepthZero) {
             EXPECT_EQ(got.hash(), expected.hash()) << variant.name;
             EXPECT_EQ(got.report.paths(), 2 * scene.pixel_count());
             EXPECT_EQ(got.report.segments(), depth * 2 * scene.pixel_count());
-            EXPECT_EQ(sum(got.report, &RoundWork::records_out), 0);
+            EXPECT_EQ(sum(got.report, &RoundReport::records_out), 0);
         }
     }
 }
@@ -198,8 +198,8 @@ TEST(RoundsReport, NeedsNoCountingOfWork) {
         SCOPED_TRACE(variant.name);
         const RenderReport got = render_pool(scene, settings, variant.pool).report;
         const std::int64_t in_registers = variant.pool.camera != CameraStage::Staged ? got.paths() : 0;
-        EXPECT_EQ(sum(got, &RoundWork::records_in), got.segments() - in_registers);
-        EXPECT_EQ(got.total(&ThreadWork::box_tests) + got.total(&ThreadWork::primitive_tests), 0);
+        EXPECT_EQ(sum(got, &RoundReport::records_in), got.segments() - in_registers);
+        EXPECT_EQ(got.total(&ThreadReport::box_tests) + got.total(&ThreadReport::primitive_tests), 0);
     }
 }
 
@@ -213,7 +213,7 @@ TEST(RoundsReport, HasTimeInTheStagesThatRanAndInNoOther) {
             const RenderReport report = render_pool(scene, settings, variant.pool).report;
             const auto seconds = [&](Stage stage) {
                 double all = 0;
-                for (const RoundWork& round : report.rounds) all += round.stage_s[static_cast<std::size_t>(stage)];
+                for (const RoundReport& round : report.rounds) all += round.stage_s[static_cast<std::size_t>(stage)];
                 return all;
             };
             for (const Stage stage : {Stage::Generate, Stage::Intersect, Stage::Shade, Stage::Accumulate})
@@ -222,7 +222,7 @@ TEST(RoundsReport, HasTimeInTheStagesThatRanAndInNoOther) {
             EXPECT_EQ(seconds(Stage::Append) > 0, variant.pool.scope == PoolScope::Shared || split_depth > 0);
             double all = 0;
             for (std::size_t i = 0; i < kStageCount; ++i) all += seconds(static_cast<Stage>(i));
-            for (const RoundWork& round : report.rounds) all += round.wait_s;
+            for (const RoundReport& round : report.rounds) all += round.wait_s;
             EXPECT_LE(all, settings.threads * report.seconds) << "some time was counted twice";
         }
     }
@@ -278,7 +278,7 @@ TEST(DeepPaths, EndInASmallPoolOfEitherScopeInTheMemoryOfShallowOnes) {
         EXPECT_LT(deep.report.pool_bytes, 1U << 20U);
         EXPECT_LE(deep.report.rounds.size(), 4096U) << "one figure for each round would grow with the depth";
         const std::int64_t in_registers = pool.camera != CameraStage::Staged ? scene.pixel_count() : 0;
-        EXPECT_EQ(sum(deep.report, &RoundWork::records_in), deep.report.segments() - in_registers);
+        EXPECT_EQ(sum(deep.report, &RoundReport::records_in), deep.report.segments() - in_registers);
     }
 }
 
@@ -322,7 +322,7 @@ TEST_P(Splitting, MakesTheImageOfRecursionInMemoryThatDoesNotDependOnDepthOrSamp
         EXPECT_EQ(render_pool(scene, less, variant.pool).report.pool_bytes, got.report.pool_bytes);
         const std::int64_t most = std::max(variant.pool.capacity, std::int64_t{1} << settings.split_depth);
         const bool is_shared = variant.pool.scope == PoolScope::Shared;
-        for (const RoundWork& round : got.report.rounds) EXPECT_LE(round.records_in, is_shared ? most : 2 * most);
+        for (const RoundReport& round : got.report.rounds) EXPECT_LE(round.records_in, is_shared ? most : 2 * most);
     }
 }
 INSTANTIATE_TEST_SUITE_P(Depths, Splitting, testing::Values(1, 2, 7));

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/error.h"
-#include "core/trace.h"
+#include "core/base/error.h"
+#include "core/runtime/trace.h"
 #include "tests/small_render.h"
 #include "tests/trace_spans.h"
 #include "wavefront/engine.h"
@@ -118,7 +118,7 @@ TEST(Session, HasEverySecondOfItsReportAsSetupOrAsWorkOrWaitingOfEachThread) {
         seconds += session->merge().seconds;
         const RenderReport& report = session->report();
         EXPECT_NEAR(report.seconds, seconds, 1e-9);
-        for (const ThreadWork& thread : report.threads)
+        for (const ThreadReport& thread : report.threads)
             EXPECT_NEAR(thread.busy_s + thread.wait_s, report.seconds - report.setup_s, 1e-6);
     }
 }

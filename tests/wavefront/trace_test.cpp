@@ -1,5 +1,5 @@
 /// The trace of a pool shows its rounds, in them the stages and the waiting, and how many records the pool holds.
-#include "core/trace.h"
+#include "core/runtime/trace.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TEST(PoolTrace, OfASharedPoolShowsRoundsStagesWaitingAndTheRecordsInThePool) {
         EXPECT_EQ(rendered.hash(), expected);
         expect_agreement(trace, rendered.report);
 
-        const std::vector<RoundWork>& rounds = rendered.report.rounds;
+        const std::vector<RoundReport>& rounds = rendered.report.rounds;
         std::vector<std::int64_t> records_in(rounds.size());
         std::int64_t generated = 0;
         std::int64_t accumulated = 0;

@@ -89,7 +89,7 @@ struct StartedRay {
 
 template <class Scalar>
 Hit<Scalar> single_hit(const CompiledScene<Scalar>& scene, const StartedRay<Scalar>& start) {
-    NoWorkCount work;
+    NoTestCount work;
     return closest_hit<kEverything>(scene, start.ray, start.leaving_id, work);
 }
 
@@ -197,7 +197,7 @@ TYPED_TEST(RaysTogether, HitInStreamsOfAnyLengthWhatEachHitsAlone) {
             for (std::size_t left = 4000; left >= length && left > 3000; left -= std::min<std::size_t>(left, 50)) {
                 RayStream<TypeParam> stream(length, tree_depth(scene));  // no longer than it must be
                 const auto rays = random_rays(scene, length, random);
-                NoWorkCount work;
+                NoTestCount work;
                 const auto intersection = left % 100 == 0 ? Intersection::Pairs : Intersection::Stream;
                 trace_stream<Native<TypeParam>>(scene, rays, stream, intersection, work);
                 for (std::size_t i = 0; i < length; ++i) {
@@ -229,7 +229,7 @@ void expect_packets_hit_what_single_rays_hit() {
             }
             const int count = 1 + random.below(kLanes<Real>);
             const Mask<Real> is_active = from_uint32<Real>(lane_numbers<Real>()) < Real(static_cast<float>(count));
-            NoWorkCount work;
+            NoTestCount work;
             const Hit<Real> hit = closest_hits<kEverything, Real>(scene, gather<Real>(rays, 0), is_active, work);
             for (int i = 0; i < count; ++i) {
                 const auto expected = single_hit(scene, rays[static_cast<std::size_t>(i)]);
@@ -271,7 +271,7 @@ TYPED_TEST(RaysTogether, HitInBeamsWhatEachHitsAlone) {
             for (int p = 0; p < packets; ++p) wide[p] = gather<Real>(rays, static_cast<std::size_t>(p * kLanes<Real>));
             using Boxes = Wide<TypeParam, kTreeWidth<TypeParam>>;
             coherent += detail::Beam<Boxes>(wide, packets).is_coherent() ? 1 : 0;
-            NoWorkCount work;
+            NoTestCount work;
             closest_hits<kEverything, Real>(scene, wide, hit, packets, count, work);
             for (int i = 0; i < count; ++i) {
                 const auto expected = single_hit(scene, rays[static_cast<std::size_t>(i)]);
@@ -290,7 +290,7 @@ TEST(Stream, CountsATestForEachRayAndNoneForTheEmptyLanes) {
         std::vector<StartedRay<float>> rays(length);
         for (auto& start : rays) start = {{vec3<float>(1, 2, 9), vec3<float>(0, 0, -1), 0}, kNoPrimitive};
         RayStream<float> stream(length, tree_depth(scene));
-        WorkCount work;
+        TestCount work;
         trace_stream<Native<float>>(scene, rays, stream, Intersection::Pairs, work);
         EXPECT_EQ(work.primitive_tests, static_cast<std::int64_t>(length));
         EXPECT_LE(work.box_tests, static_cast<std::int64_t>(length));  // none where the sphere is outside the tree

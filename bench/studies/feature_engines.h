@@ -1,0 +1,62 @@
+/// Engines whose kernels are compiled for a set of features of choice, whatever the scene needs: study `needs`.
+///
+/// The engines of the project are compiled for three sets (kCompiledFeatures); here are those with one feature each. They
+/// make the image of any scene that lacks what they lack.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/studies/renders.h"
+#include "core/scene/features.h"
+
+namespace raypool::studies {
+
+/// Fuzz is a property of metal, so no scene has it alone; and code that has it alone is the code that has nothing,
+/// compiled again and put at another place. That is the control: what the place of the code makes of the time.
+inline constexpr const char* kControl = "control";
+
+struct FeatureSet {
+    const char* name;
+    Features features;
+};
+inline constexpr auto kFeatureSets = [] {
+    std::array<FeatureSet, kFeatureNames.size() + 1> sets{};
+    for (std::size_t i = 0; i < kFeatureNames.size(); ++i) {
+        // Every member is written, the false ones too: g++ 12 leaves those that were not out of the symbols of the
+        // templates, so that the functions of different sets get one name, and the linker keeps one of them.
+        sets[i] = {kFeatureNames[i].name,
+                   {i == 0, i == 1, i == 2, i == 3 || i == 4, i == 4, i == 5, i == 6, i == 7, i == 8}};
+    }
+    sets.back() = {kControl, {.fuzz = true}};
+    return sets;
+}();
+
+/// What Engine::begin() is.
+using BeginFunction = std::unique_ptr<RenderSession> (*)(const CompiledScene<float>&, const RenderSettings&,
+                                                         Framebuffer&);
+
+/// By kFeatureSets.
+BeginFunction iterative_begin(std::size_t set);
+BeginFunction pool_begin(std::size_t set);
+
+/// The pool's are in three files, which compile slowly: those from set 0, kFileSets and 2 * kFileSets on.
+inline constexpr std::size_t kFileSets = 4;
+BeginFunction pool_begin_front(std::size_t set);
+BeginFunction pool_begin_middle(std::size_t set);
+BeginFunction pool_begin_back(std::size_t set);
+
+/// The function of each set from `first` on, `count` of them, by Pick<needs>::begin.
+template <template <Features> class Pick, std::size_t first, std::size_t count>
+BeginFunction begin_of_set(std::size_t set) {
+    constexpr auto kFunctions = []<std::size_t... i>(std::index_sequence<i...>) {
+        return std::array<BeginFunction, count>{&Pick<kFeatureSets[first + i].features>::begin...};
+    }
+    (std::make_index_sequence<count>());
+    return kFunctions[set - first];
+}
+
+}  // namespace raypool::studies

@@ -1,0 +1,72 @@
+#include "core/film/framebuffer.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+namespace raypool {
+
+namespace {
+/// The least k with 2^k >= value, for value > 0.
+int ceil_log2(double value) {
+    int exponent = 0;
+    const double mantissa = std::frexp(value, &exponent);  // value = mantissa 2^exponent, mantissa in [1/2, 1)
+    return mantissa == 0.5 ? exponent - 1 : exponent;
+}
+constexpr double kLeastMaxRadiance = 0x1p-20;  ///< a black scene still has a step
+}  // namespace
+
+FixedPoint FixedPoint::make(std::int64_t spp, double max_radiance) {
+    const int limit_bits = ceil_log2(std::max(max_radiance, kLeastMaxRadiance)) + 1;
+    const int spp_bits = ceil_log2(static_cast<double>(std::max(spp, kExtensibleSamples)));
+    return {62 - limit_bits - spp_bits, std::ldexp(1.0, limit_bits)};
+}
+
+FixedRgb SampleConverter::convert_bad(const Eigen::Vector3d& radiance) {
+    if (!std::isfinite(radiance[0]) || !std::isfinite(radiance[1]) || !std::isfinite(radiance[2])) {
+        ++statistics_.non_finite;
+        return {};
+    }
+    FixedRgb fixed{};
+    for (int i = 0; i < 3; ++i) {
+        const double kept = std::clamp(radiance[i], 0.0, limit_);
+        if (kept != radiance[i]) ++statistics_.clamped;
+        statistics_.clamped_energy += radiance[i] - kept;
+        fixed[i] = std::llrint(kept * scale_);
+    }
+    return fixed;
+}
+
+Framebuffer::Framebuffer(std::int64_t width, std::int64_t height, const FixedPoint& fixed, Moments moments)
+    : width_(width),
+      height_(height),
+      fixed_(fixed),
+      sums_(static_cast<std::size_t>(3 * width * height)),
+      squares_(moments == Moments::Second ? static_cast<std::size_t>(2 * width * height) : 0) {}
+
+std::string Framebuffer::hash() const {
+    const std::array<std::int64_t, 3> shape{width_, height_, fixed_.fraction_bits};
+    const XXH64_hash_t seed = XXH3_64bits(shape.data(), sizeof(shape));
+    const XXH64_hash_t first = XXH3_64bits_withSeed(sums_.data(), sums_.size() * sizeof(std::int64_t), seed);
+    if (!has_squares()) return fmt::format("{:016x}", first);
+    return fmt::format("{:016x}", XXH3_64bits_withSeed(squares_.data(), squares_.size() * sizeof(std::int64_t), first));
+}
+
+Image Framebuffer::image(std::int64_t sample_count) const {
+    Image image(width_, height_);
+    const double scale = 1 / (fixed_.scale() * static_cast<double>(std::max<std::int64_t>(sample_count, 1)));
+    std::transform(sums_.begin(), sums_.end(), image.rgb.begin(),
+                   [scale](std::int64_t sum) { return static_cast<float>(static_cast<double>(sum) * scale); });
+    return image;
+}
+
+Image Framebuffer::image(std::span<const std::int32_t> sample_counts) const {
+    Image image(width_, height_);
+    for (std::size_t i = 0; i < sums_.size(); ++i)
+        image.rgb[i] = static_cast<float>(static_cast<double>(sums_[i]) /
+                                          (fixed_.scale() * static_cast<double>(sample_counts[i / 3])));
+    return image;
+}
+
+}  // namespace raypool

@@ -1,0 +1,79 @@
+/// The shapes of a scene as traversal reads them: blocks of spheres, quads and planes, and trees over blocks.
+///
+/// Immutable once they are made; shared by all threads without locks.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/bvh.h"
+#include "core/math/vec.h"
+
+namespace raypool {
+
+/// Up to `lanes` spheres, a lane each. An unused lane has a NaN radius, which no ray hits, and no id.
+template <class Scalar, int lanes>
+struct alignas(64) SphereBlock {
+    static constexpr int kLanes = lanes;
+    Scalar center[3][lanes];
+    Scalar motion[3][lanes];
+    Scalar radius[lanes];
+    Scalar padded_radius[lanes];  ///< half the edge of the sphere's own box: every rounding error stays inside
+    std::int32_t id[lanes];
+};
+
+/// Up to `lanes` quads (or, without a box, planes). An unused lane has a NaN normal and no id.
+template <class Scalar, int lanes>
+struct alignas(64) PlanarBlock {
+    static constexpr int kLanes = lanes;
+    Scalar point[3][lanes];  ///< of the plane; coincident shapes have the same one
+    Scalar normal[3][lanes];
+    Scalar corner[3][lanes];  ///< what coordinates are measured from; unused by planes
+    Scalar dual_u[3][lanes];  ///< unused by planes
+    Scalar dual_v[3][lanes];
+    Scalar low[3][lanes];  ///< the padded box; unused by planes
+    Scalar high[3][lanes];
+    std::int32_t id[lanes];
+    std::int32_t group[lanes];  ///< what a ray leaves that leaves the shape: the id of the shapes in its plane
+};
+
+/// A tree whose leaf i is block i.
+template <class Block, class Scalar, int width>
+struct BlockTree {
+    std::vector<WideNode<Scalar, width>> nodes;        ///< their bounds hold over all times
+    std::vector<NodeMotion<Scalar, width>> motion[3];  ///< by axis, then by node; empty where no shape moves along the axis
+    std::vector<Block> blocks;
+    int depth = 0;
+};
+
+/// Children of a node, and primitives of a leaf: as many as fill a register, eight where there is a choice. Single rays
+/// test them all at once, streams and packets one by one against a register of rays.
+template <class Scalar>
+inline constexpr int kTreeWidth = sizeof(Scalar) == 4 ? 8 : Wide<double, stdx::native_simd<double>::size()>::size();
+
+template <class Scalar>
+struct ShapeTables {
+    static constexpr int kWidth = kTreeWidth<Scalar>;
+
+    /// Spheres that span the scene, and planes: every ray tests them, before the trees.
+    std::vector<SphereBlock<Scalar, kWidth>> large_spheres;
+    std::vector<PlanarBlock<Scalar, kWidth>> planes;
+    BlockTree<SphereBlock<Scalar, kWidth>, Scalar, kWidth> sphere_tree;
+    BlockTree<PlanarBlock<Scalar, kWidth>, Scalar, kWidth> quad_tree;
+
+    /// Calls visit(std::vector&) for every table: the one list of them.
+    template <class Self, class Visit>
+    static void for_each_table(Self& self, Visit visit) {
+        visit(self.large_spheres);
+        visit(self.planes);
+        const auto visit_tree = [&](auto& tree) {
+            visit(tree.nodes);
+            for (auto& along_axis : tree.motion) visit(along_axis);
+            visit(tree.blocks);
+        };
+        visit_tree(self.sphere_tree);
+        visit_tree(self.quad_tree);
+    }
+};
+
+}  // namespace raypool

@@ -1,0 +1,269 @@
+/// The closest hit of one ray: the scene's large shapes, then the trees, a register of boxes or shapes at a time.
+///
+/// Called by whatever traces rays one by one. Ties go to the smaller primitive id, so to the first listed of its kind.
+/// `Work` counts what was tested: TestCount does, NoTestCount costs nothing.
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry/shape_tables.h"
+#include "core/geometry/sphere_method.h"
+#include "core/scene/features.h"
+
+namespace raypool {
+
+struct TestCount {
+    std::int64_t box_tests = 0;        ///< children of tree nodes, one by one
+    std::int64_t primitive_tests = 0;  ///< shapes, one by one
+
+    template <class Scalar, int width>
+    void count(const WideNode<Scalar, width>& node) {
+        for (int i = 0; i < width; ++i) box_tests += node.bounds[0][0][i] <= node.bounds[0][1][i] ? 1 : 0;
+    }
+    template <class Block>
+    void count(const Block& block) {
+        for (const std::int32_t id : block.id) primitive_tests += id != kNoPrimitive ? 1 : 0;
+    }
+    /// Child `lane` of a node, for the rays set in `rays`.
+    template <class Scalar, int width>
+    void count_boxes(const WideNode<Scalar, width>& node, int lane, unsigned rays) {
+        if (node.bounds[0][0][lane] <= node.bounds[0][1][lane]) box_tests += std::popcount(rays);
+    }
+    void count_primitives(int rays) { primitive_tests += rays; }
+    void begin_segment() {}  ///< of a path that is followed by itself; a log of every segment needs to know
+};
+
+struct NoTestCount {
+    static constexpr std::int64_t box_tests = 0;
+    static constexpr std::int64_t primitive_tests = 0;
+    RAYPOOL_INLINE void count(const auto&) {}
+    RAYPOOL_INLINE void count_boxes(const auto&, int, unsigned) {}
+    RAYPOOL_INLINE void count_primitives(int) {}
+    RAYPOOL_INLINE void begin_segment() {}
+};
+
+/// The deepest tree's: a node takes itself from the stack and puts up to `width` children there, so each level of nodes
+/// leaves width - 1 behind. A level of a wide tree stands for one or more of the binary one.
+template <int width>
+inline constexpr int kTraversalStack = kMostTreeLevels*(width - 1) + 1;
+
+/// One ray in every lane, with what the box test and the shapes need of it.
+template <class Real>
+struct SpreadRay {
+    Vec3<Real> origin;
+    Vec3<Real> direction;
+    Real time;
+    RayInverse<Real> inverse;
+    int sign[3];  ///< of the direction: 1 where negative, so that bounds[axis][sign] is the near side
+    std::int32_t leaving_id;
+
+    RAYPOOL_INLINE SpreadRay(const Ray<ScalarOf<Real>>& ray, const RayInverse<ScalarOf<Real>>& scalar,
+                             std::int32_t leaving)
+        : origin(broadcast<Real>(ray.origin)),
+          direction(broadcast<Real>(ray.direction)),
+          time(ray.time),
+          leaving_id(leaving) {
+        for (int i = 0; i < 3; ++i) {
+            inverse.near_scale[i] = Real(scalar.near_scale[i]);
+            inverse.far_scale[i] = Real(scalar.far_scale[i]);
+            inverse.is_negative[i] = Mask<Real>(scalar.is_negative[i]);
+            sign[i] = scalar.is_negative[i] ? 1 : 0;
+        }
+    }
+};
+
+/// Whether a primitive's box is in a tree and so limits its hits.
+enum class InBox : bool { No, Yes };
+
+namespace detail {
+
+template <class Real>
+RAYPOOL_INLINE Real load(const ScalarOf<Real>* from) {
+    return Real(from, stdx::vector_aligned);
+}
+template <class Real>
+RAYPOOL_INLINE Vec3<Real> load(const ScalarOf<Real> (&from)[3][kLanes<Real>]) {
+    return vec3<Real>(load<Real>(from[0]), load<Real>(from[1]), load<Real>(from[2]));
+}
+
+template <class Real>
+RAYPOOL_INLINE Mask<Real> is_leaving(const std::int32_t* id, std::int32_t leaving_id) {
+    using Ids = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
+    const Ids ids(id, stdx::vector_aligned);
+    return as_mask<Real>(stdx::static_simd_cast<Int<Real>>(ids) == Int<Real>(leaving_id));
+}
+
+/// The bounds of children of nodes at the time of a ray: of side 0 the lower, of side 1 the upper.
+template <Features features, class Tree>
+class TreeBounds {
+  public:
+    RAYPOOL_INLINE explicit TreeBounds(const Tree& tree) : nodes_(tree.nodes.data()) {
+        if constexpr (kCanMove) {
+            for (int axis = 0; axis < 3; ++axis)
+                motion_[axis] = tree.motion[axis].empty() ? nullptr : tree.motion[axis].data();
+        }
+    }
+    /// Of all children of a node.
+    template <class Boxes>
+    RAYPOOL_INLINE Boxes children(std::size_t node, int axis, int side, const Boxes& time) const {
+        if constexpr (kCanMove) {
+            if (motion_[axis] != nullptr) {
+                const auto& motion = motion_[axis][node];
+                return mad<Boxes>(time, load<Boxes>(motion.change[side]), load<Boxes>(motion.start[side]));
+            }
+        }
+        return load<Boxes>(nodes_[node].bounds[axis][side]);
+    }
+    /// Of one, for a register of rays.
+    template <class Real>
+    RAYPOOL_INLINE Real child(std::size_t node, int lane, int axis, int side, const Real& time) const {
+        if constexpr (kCanMove) {
+            if (motion_[axis] != nullptr) {
+                const auto& motion = motion_[axis][node];
+                return mad<Real>(time, Real(motion.change[side][lane]), Real(motion.start[side][lane]));
+            }
+        }
+        return Real(nodes_[node].bounds[axis][side][lane]);
+    }
+
+  private:
+    using Block = typename decltype(Tree::blocks)::value_type;
+    using Motion = typename std::remove_cvref_t<decltype(Tree::motion[0])>::value_type;
+    static constexpr bool kCanMove = features.motion && requires(Block block) { block.motion; };
+
+    const typename decltype(Tree::nodes)::value_type* nodes_;
+    const Motion* motion_[3];  ///< null along an axis on which nothing moves
+};
+
+/// Takes the closest of the lanes in `bits`.
+template <class Real>
+RAYPOOL_INLINE void keep_closest(const Real& t, const std::int32_t* id, unsigned bits, Hit<ScalarOf<Real>>& hit) {
+    alignas(64) ScalarOf<Real> distance[kLanes<Real>];
+    t.copy_to(distance, stdx::vector_aligned);
+    for (; bits != 0; bits &= bits - 1) {
+        const int i = std::countr_zero(bits);
+        const bool is_tie_won = distance[i] == hit.t && id[i] < hit.primitive_id;
+        if (distance[i] < hit.t || is_tie_won) {
+            hit.t = distance[i];
+            hit.primitive_id = id[i];
+        }
+    }
+}
+
+template <Features features, InBox in_box, class Real, class Block>
+requires requires(Block b) {
+    b.radius;
+}
+RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& ray, Hit<ScalarOf<Real>>& hit) {
+    Vec3<Real> center = load<Real>(block.center);
+    if constexpr (features.motion) center = center_at<Real>(center, load<Real>(block.motion), ray.time);
+    const Real t = SphereMethod<features.variant>::template distance<Real>(
+        ray.origin, ray.direction, center, load<Real>(block.radius), is_leaving<Real>(block.id, ray.leaving_id));
+    Mask<Real> is_closer = t <= Real(hit.t) && t < Real(kInfinity<Real>);
+    if (none(is_closer)) return;
+    if constexpr (in_box == InBox::Yes) {
+        const Real r = load<Real>(block.padded_radius);
+        const Vec3<Real> low = vec3<Real>(center[0] - r, center[1] - r, center[2] - r);
+        const Vec3<Real> high = vec3<Real>(center[0] + r, center[1] + r, center[2] + r);
+        is_closer = is_closer && is_inside_box<Real>(low, high, ray.origin, ray.inverse, t);
+    }
+    keep_closest<Real>(t, block.id, mask_bits(is_closer), hit);
+}
+
+template <Features features, InBox in_box, class Real, class Block>
+requires requires(Block b) {
+    b.dual_u;
+}
+RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& ray, Hit<ScalarOf<Real>>& hit) {
+    const Mask<Real> leaving = is_leaving<Real>(block.group, ray.leaving_id);
+    const Vec3<Real> point = load<Real>(block.point);
+    const Vec3<Real> normal = load<Real>(block.normal);
+    if constexpr (in_box == InBox::No) {
+        if (none(may_meet_plane<Real>(ray.origin, ray.direction, point, normal, Real(hit.t)))) return;
+        const Real t = plane_distance<Real>(ray.origin, ray.direction, point, normal, leaving);
+        keep_closest<Real>(t, block.id, mask_bits(t <= Real(hit.t) && t < Real(kInfinity<Real>)), hit);
+    } else {
+        const Real t = quad_distance<Real>(ray.origin, ray.direction, point, normal, load<Real>(block.corner),
+                                           load<Real>(block.dual_u), load<Real>(block.dual_v), leaving);
+        const Mask<Real> is_closer = t <= Real(hit.t) && t < Real(kInfinity<Real>);
+        if (none(is_closer)) return;
+        const Mask<Real> is_inside =
+            is_inside_box<Real>(load<Real>(block.low), load<Real>(block.high), ray.origin, ray.inverse, t);
+        keep_closest<Real>(t, block.id, mask_bits(is_closer && is_inside), hit);
+    }
+}
+
+/// From `child` of the tree on.
+template <Features features, class Real, class Block, class Work>
+RAYPOOL_INLINE void walk(const BlockTree<Block, ScalarOf<Real>, kLanes<Real>>& tree, const SpreadRay<Real>& ray,
+                         Hit<ScalarOf<Real>>& hit, Work& work, std::int32_t child = 0) {
+    using S = ScalarOf<Real>;
+    if (tree.nodes.empty()) return;
+    const TreeBounds<features, BlockTree<Block, S, kLanes<Real>>> bounds(tree);
+    struct Entry {
+        S enter;
+        std::int32_t child;
+    };
+    Entry stack[kTraversalStack<kLanes<Real>>];
+    Entry* top = stack;
+    for (;;) {
+        if (child >= 0) {
+            const auto index = static_cast<std::size_t>(child);
+            const auto& node = tree.nodes[index];
+            work.count(node);
+            Vec3<Real> near;
+            Vec3<Real> far;
+            for (int i = 0; i < 3; ++i) {
+                near[i] = bounds.template children<Real>(index, i, ray.sign[i], ray.time);
+                far[i] = bounds.template children<Real>(index, i, 1 - ray.sign[i], ray.time);
+            }
+            const Interval<Real> inside = box_interval<Real>(near, far, ray.origin, ray.inverse, Real(hit.t));
+            alignas(64) S enter[kLanes<Real>];
+            inside.enter.copy_to(enter, stdx::vector_aligned);
+
+            // Push the children met, nearest on top.
+            Entry* const bottom = top;
+            for (unsigned bits = mask_bits(inside.enter <= inside.exit); bits != 0; bits &= bits - 1) {
+                const int i = std::countr_zero(bits);
+                Entry* place = top++;
+                for (; place != bottom && place[-1].enter < enter[i]; --place) *place = place[-1];
+                *place = {enter[i], node.child[i]};
+            }
+        } else {
+            const Block& block = tree.blocks[~child];
+            work.count(block);
+            intersect_block<features, InBox::Yes, Real>(block, ray, hit);
+        }
+        do {
+            if (top == stack) return;
+            --top;
+        } while (top->enter > hit.t);
+        child = top->child;
+    }
+}
+
+}  // namespace detail
+
+/// `leaving_id` is what the ray starts on (Scattered::leaving_id), or kNoPrimitive.
+template <Features features, class Scalar, class Work>
+[[gnu::noinline]] Hit<Scalar> closest_hit(const ShapeTables<Scalar>& scene, const Ray<Scalar>& ray,
+                                          std::int32_t leaving_id, Work& work) {
+    using Real = Wide<Scalar, kTreeWidth<Scalar>>;
+    const SpreadRay<Real> spread(ray, ray_inverse<Scalar>(ray.direction), leaving_id);
+    Hit<Scalar> hit;
+    for (const auto& block : scene.large_spheres) {
+        work.count(block);
+        detail::intersect_block<features, InBox::No, Real>(block, spread, hit);
+    }
+    if constexpr (features.planar) {
+        for (const auto& block : scene.planes) {
+            work.count(block);
+            detail::intersect_block<features, InBox::No, Real>(block, spread, hit);
+        }
+        detail::walk<features, Real>(scene.quad_tree, spread, hit, work);
+    }
+    detail::walk<features, Real>(scene.sphere_tree, spread, hit, work);
+    return hit;
+}
+
+}  // namespace raypool

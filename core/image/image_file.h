@@ -1,0 +1,73 @@
+/// Image files: PNG, OpenEXR and PFM, written whole or not at all, read without trusting them.
+///
+/// PNG: 8 bits a channel, coded with the curve of sRGB, clamped to [0, 1], NaN as black. Lossy.
+/// EXR: written as 32-bit floats, ZIP-compressed. Read by OpenEXR: scan lines or tiles, one part or several, half,
+/// float or integer values, any compression. Of several layers the first that has red, green and blue is taken, of
+/// files without one the first luminance. Not read: parts of deep data, channels of fewer values than pixels (but
+/// luminance with chroma, which OpenEXR turns into RGB at half precision), and rows so wide and of so many channels
+/// that a block of them takes more than 1 GiB and more than 1 KiB a byte of the file (kMaxExrBlockValues,
+/// kMaxExrExpansion); docs/image-files.md has it all. PFM: 32-bit floats, bottom row first, in colour or
+/// grey; written little endian, read in both byte orders. Carries no attributes. EXR and PFM keep every bit. The bytes
+/// of a file depend on the image and the attributes only.
+///
+/// Called by the command and by the scene reader. A file that is absent, broken, or larger than the limits throws an
+/// InputError naming it, before memory is spent on what it only claims to hold. Thread-safe, for different outputs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/image/image.h"
+
+namespace raypool {
+
+inline constexpr std::int64_t kMaxImageSide = 65536;
+inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 30;
+inline constexpr std::int64_t kMaxExrBlockValues = std::int64_t{1} << 28;
+inline constexpr std::int64_t kMaxExrExpansion = 256;  ///< or so many values in a block for each byte of the file
+inline constexpr std::int64_t kMaxTextureSide = 16384;
+inline constexpr std::int64_t kMaxSceneTexels = std::int64_t{1} << 28;  ///< of all textures of a scene
+
+enum class ImageFormat { Png, Exr, Pfm };
+
+/// What an image carries besides pixels, such as its settings and its hash. Names are ASCII with 1 to 79 characters,
+/// texts are written as UTF-8 (core/base/text.h).
+using ImageAttributes = std::map<std::string, std::string>;
+
+/// By the extension, in either case; an InputError for any other than .png, .exr and .pfm.
+ImageFormat image_format(const std::filesystem::path& path);
+
+void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes);
+
+/// Columns [x_begin, x_end) of rows [y_begin, y_end).
+struct PixelWindow {
+    std::int64_t x_begin = 0, x_end = 0;
+    std::int64_t y_begin = 0, y_end = 0;
+    bool operator==(const PixelWindow&) const = default;
+};
+
+/// What a file holds.
+struct ImageContents {
+    Image image;              ///< the data window
+    PixelWindow data_window;  ///< where the image's pixels lie, and ...
+    PixelWindow
+        display_window;  ///< ... what is to be shown of them; both are the image's own where there is no such thing
+    std::vector<std::string> left_out;  ///< what is in the file and not in `image`, such as "channel A"
+    std::string primaries = "sRGB";     ///< chromaticities of red, green, blue and white, where they are others
+    ImageAttributes attributes;         ///< of type string, of an EXR file; not the name and type of its part
+};
+
+ImageContents read_image_contents(const std::filesystem::path& path);
+
+/// The pixels alone. PNG samples of 8 or fewer bits, or 16, become linear by the curve of sRGB, or by the exponent in a
+/// gAMA chunk that says otherwise; alpha and colour profiles are ignored. Of an EXR file this is the data window.
+Image read_image(const std::filesystem::path& path);
+
+/// A PNG file, as read_image() reads it, of at most kMaxTextureSide on either side and at most `max_texels`.
+Image read_texture(const std::filesystem::path& path, std::int64_t max_texels = kMaxSceneTexels);
+
+}  // namespace raypool

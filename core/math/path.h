@@ -1,0 +1,37 @@
+/// Names for a path and for how far it has come: together the key of its random numbers.
+#pragma once
+
+#include "core/math/real.h"
+
+namespace raypool {
+
+/// Which path this is; with its step it is the key of its random numbers.
+template <class Real>
+struct PathKey {
+    Uint32<Real> pixel;  ///< row * width + column
+    Uint32<Real> sample;
+};
+
+/// Where a path is: the number of hits so far, and which branch of a path that was split (0: none yet). A branch b
+/// splits into 2b + 1 and 2b + 2, as in a heap. Both are part of the key of random numbers.
+namespace path_step {
+inline constexpr std::uint32_t kBranchShift = 24;
+inline constexpr std::int32_t kMostBounces = (1 << kBranchShift) - 1;
+inline constexpr int kMostSplits = 7;  ///< branches then fit into 8 bits
+
+template <class U>
+RAYPOOL_INLINE U bounce(const U& step) {
+    return step & U((1U << kBranchShift) - 1);
+}
+template <class U>
+RAYPOOL_INLINE U branch(const U& step) {
+    return step >> static_cast<int>(kBranchShift);
+}
+/// The step of the reflected branch; that of the refracted one is 1 << kBranchShift more.
+template <class U>
+RAYPOOL_INLINE U reflected_branch(const U& step) {
+    return step + (branch(step) + U(1U)) * U(1U << kBranchShift);
+}
+}  // namespace path_step
+
+}  // namespace raypool

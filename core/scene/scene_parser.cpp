@@ -1,0 +1,284 @@
+#include "core/scene/scene_parser.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/image/image_file.h"
+#include "core/scene/json_cursor.h"
+#include "core/base/json_parser.h"
+#include "core/base/text.h"
+
+namespace raypool {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Lengths within these limits can be squared, and three of them multiplied, within the range of float.
+constexpr double kMaxLength = 1e12;
+constexpr double kMinLength = 1e-12;
+constexpr double kMaxRadiance = 1e6;
+constexpr double kMinSine = 1e-6;  // of the angle between directions that must not be parallel
+
+// Beyond these angles a tangent of half of them times kMaxLength could leave float.
+constexpr double kMinFovDegrees = 0.001;
+constexpr double kMaxAngleDegrees = 179.9;
+
+bool are_parallel(const Vector3d& a, const Vector3d& b) {
+    return a.normalized().cross(b.normalized()).norm() < kMinSine;
+}
+
+Vector3d position(const JsonCursor& place) {
+    return place.vector3(-kMaxLength, kMaxLength);
+}
+
+Vector3d direction(const JsonCursor& place) {
+    Vector3d value = position(place);
+    if (value.norm() < kMinLength) place.refuse("not be a zero vector", fmt::format("a length of {:g}", value.norm()));
+    return value;
+}
+
+CameraDescription camera(JsonObject object) {
+    CameraDescription camera;
+    camera.look_from = position(object.required("look_from"));
+    const JsonCursor look_at = object.required("look_at");
+    camera.look_at = position(look_at);
+    const Vector3d view = camera.look_at - camera.look_from;
+    if (view.norm() < kMinLength) look_at.refuse("differ from look_from", "the same point");
+
+    if (const auto up = object.optional("up")) camera.up = direction(*up);
+    if (are_parallel(camera.up, view)) {
+        object.place().refuse("have an up that is not parallel to the line from look_from to look_at",
+                              fmt::format("up [{:g}, {:g}, {:g}]", camera.up.x(), camera.up.y(), camera.up.z()));
+    }
+
+    if (const auto fov = object.optional("vertical_fov_degrees")) {
+        camera.vertical_fov_degrees = fov->number(kMinFovDegrees, kMaxAngleDegrees);
+    }
+    if (const auto angle = object.optional("defocus_angle_degrees")) {
+        camera.defocus_angle_degrees = angle->number(0, kMaxAngleDegrees);
+    }
+    if (const auto distance = object.optional("focus_distance")) {
+        camera.focus_distance = distance->number(kMinLength, kMaxLength);
+    } else if (camera.defocus_angle_degrees > 0) {
+        object.place().refuse("have the key \"focus_distance\" when defocus_angle_degrees is above 0", "none");
+    }
+
+    if (const auto shutter = object.optional("shutter")) {
+        if (shutter->size() != 2) shutter->refuse("be an array of 2 numbers: open, close");
+        camera.shutter_open = shutter->item(0).number(0, 1);
+        camera.shutter_close = shutter->item(1).number(0, 1);
+        if (camera.shutter_close < camera.shutter_open) {
+            shutter->refuse("open before it closes",
+                            fmt::format("[{:g}, {:g}]", camera.shutter_open, camera.shutter_close));
+        }
+    }
+    object.refuse_unknown_keys();
+    return camera;
+}
+
+Background background(const JsonCursor& place) {
+    if (place.is_array()) {
+        const Vector3d radiance = place.vector3(0, kMaxRadiance);
+        return {radiance, radiance};
+    }
+    if (!place.is_object()) place.refuse("be a colour [r, g, b] or an object with bottom and top");
+    JsonObject object(place);
+    Background gradient{object.required("bottom").vector3(0, kMaxRadiance),
+                        object.required("top").vector3(0, kMaxRadiance)};
+    object.refuse_unknown_keys();
+    return gradient;
+}
+
+/// The texture's file lies below `folder` wherever links lead: a scene from elsewhere opens nothing else.
+std::shared_ptr<const Image> image_below(const fs::path& folder, const JsonCursor& place, std::int64_t max_texels) {
+    const fs::path relative = place.text();
+    const bool goes_up = std::find(relative.begin(), relative.end(), "..") != relative.end();
+    if (relative.is_absolute() || goes_up) place.refuse("be a path below the scene's folder, without \"..\"");
+
+    std::error_code error;
+    const fs::path root = fs::weakly_canonical(folder.empty() ? "." : folder, error);
+    const fs::path file = error ? fs::path() : fs::weakly_canonical(root / relative, error);
+    if (error) place.refuse("name a file", error.message());
+    const auto root_end = std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first;
+    if (root_end != root.end()) {
+        place.refuse("stay below the scene's folder", "a link to " + file.string());
+    }
+
+    try {
+        return std::make_shared<const Image>(read_texture(folder / relative, max_texels));
+    } catch (const InputError& broken) {
+        place.refuse("name a PNG image that can be read", broken.what());
+    }
+}
+
+/// `texels_left` is what the images of the scene may still hold together: a small file can be a large image.
+Texture texture(const fs::path& folder, JsonObject object, std::int64_t& texels_left) {
+    using Kind = Texture::Kind;
+    Texture texture;
+    const std::string type = object.required("type").one_of({"solid", "checker_3d", "checker_uv", "image"});
+    if (type == "solid") {
+        texture.kind = Kind::Solid;
+        texture.even = object.required("color").vector3(0, kMaxRadiance);
+    } else if (type == "image") {
+        texture.kind = Kind::Image;
+        texture.image = image_below(folder, object.required("file"), texels_left);
+        texels_left -= std::int64_t{texture.image->width} * texture.image->height;
+        if (const auto wrap = object.optional("wrap")) {
+            texture.wrap = wrap->one_of({"repeat", "clamp"}) == "repeat" ? Texture::Wrap::Repeat : Texture::Wrap::Clamp;
+        }
+    } else {
+        texture.kind = type == "checker_3d" ? Kind::Checker3d : Kind::CheckerUv;
+        texture.even = object.required("even").vector3(0, kMaxRadiance);
+        texture.odd = object.required("odd").vector3(0, kMaxRadiance);
+        texture.scale = object.required("scale").number(kMinLength, kMaxLength);
+    }
+    if (texture.kind == Kind::Checker3d) {
+        if (const auto offset = object.optional("offset")) texture.offset = position(*offset);
+    }
+    object.refuse_unknown_keys();
+    return texture;
+}
+
+/// Fills a Scene from the top of the document downwards, since later parts name earlier ones.
+class SceneReader {
+  public:
+    explicit SceneReader(fs::path texture_folder) : texture_folder_(std::move(texture_folder)) {}
+
+    Scene read(const JsonCursor& root) {
+        JsonObject object(root);
+        if (const auto schema = object.optional("$schema")) schema->text();  // for editors
+        scene_.description = object.required("description").text();
+        if (const auto image = object.optional("image")) read_image_size(JsonObject(*image));
+        scene_.camera = camera(JsonObject(object.required("camera")));
+        scene_.background = background(object.required("background"));
+        if (const auto textures = object.optional("textures")) {
+            std::int64_t texels_left = kMaxSceneTexels;
+            for (const auto& [name, place] : textures->members()) {
+                texture_ids_[name] = add(texture(texture_folder_, JsonObject(place), texels_left));
+            }
+        }
+        if (const auto materials = object.optional("materials")) {
+            for (const auto& [name, place] : materials->members()) {
+                material_ids_[name] = static_cast<std::int32_t>(scene_.materials.size());
+                scene_.materials.push_back(material(JsonObject(place)));
+            }
+        }
+        const JsonCursor shapes = object.required("shapes");
+        for (std::size_t i = 0; i < shapes.size(); ++i) read_shape(JsonObject(shapes.item(i)));
+        object.refuse_unknown_keys();
+        return std::move(scene_);
+    }
+
+  private:
+    void read_image_size(JsonObject object) {
+        constexpr std::int64_t kMaxPixels = 65536;  // along one side
+        scene_.width = object.required("width").integer(1, kMaxPixels);
+        scene_.height = object.required("height").integer(1, kMaxPixels);
+        object.refuse_unknown_keys();
+    }
+
+    std::int32_t add(Texture texture) {
+        scene_.textures.push_back(std::move(texture));
+        return static_cast<std::int32_t>(scene_.textures.size()) - 1;
+    }
+
+    Material material(JsonObject object) {
+        using Kind = Material::Kind;
+        Material material;
+        const std::string type = object.required("type").one_of({"diffuse", "metal", "dielectric", "emissive"});
+        if (type == "dielectric") {
+            material.kind = Kind::Dielectric;
+            material.ior = object.required("ior").number(0.1, 10);
+        } else if (type == "emissive") {
+            material.kind = Kind::Emissive;
+            material.texture_id = texture_id(object.required("radiance"), kMaxRadiance);
+        } else {
+            material.kind = type == "metal" ? Kind::Metal : Kind::Diffuse;
+            material.texture_id = texture_id(object.required("albedo"), 1);
+        }
+        if (material.kind == Kind::Metal) {
+            if (const auto fuzz = object.optional("fuzz")) material.fuzz = fuzz->number(0, 1);
+        }
+        object.refuse_unknown_keys();
+        return material;
+    }
+
+    /// A colour written in place, or a texture by its name.
+    std::int32_t texture_id(const JsonCursor& place, double max_component) {
+        if (place.is_array()) {
+            Texture solid;
+            solid.even = place.vector3(0, max_component);
+            return add(std::move(solid));
+        }
+        if (!place.is_string()) place.refuse("be a colour [r, g, b] or the name of a texture");
+        const auto named = texture_ids_.find(place.text());
+        if (named == texture_ids_.end()) place.refuse("name a texture");
+        const Texture& texture = scene_.textures[static_cast<std::size_t>(named->second)];
+        const double brightest = std::max(texture.even.maxCoeff(), texture.odd.maxCoeff());
+        if (brightest > max_component) {
+            place.refuse(fmt::format("name a texture within [0, {:g}]", max_component),
+                         fmt::format("one that reaches {:g}", brightest));
+        }
+        return named->second;
+    }
+
+    std::int32_t material_id(const JsonCursor& place) const {
+        const auto named = material_ids_.find(place.text());
+        if (named == material_ids_.end()) place.refuse("name a material");
+        return named->second;
+    }
+
+    void read_shape(JsonObject object) {
+        const std::string type = object.required("type").one_of({"sphere", "quad", "plane"});
+        if (type == "sphere") {
+            Sphere sphere;
+            sphere.center0 = position(object.required("center"));
+            const auto center1 = object.optional("center1");
+            sphere.center1 = center1 ? position(*center1) : sphere.center0;
+            sphere.radius = object.required("radius").number(kMinLength, kMaxLength);
+            sphere.material_id = material_id(object.required("material"));
+            scene_.spheres.push_back(sphere);
+        } else if (type == "quad") {
+            Quad quad;
+            quad.corner = position(object.required("corner"));
+            quad.edge_u = direction(object.required("edge_u"));
+            const JsonCursor edge_v = object.required("edge_v");
+            quad.edge_v = direction(edge_v);
+            if (are_parallel(quad.edge_u, quad.edge_v)) edge_v.refuse("not be parallel to edge_u", "a parallel edge");
+            quad.material_id = material_id(object.required("material"));
+            scene_.quads.push_back(quad);
+        } else {
+            Plane plane;
+            plane.point = position(object.required("point"));
+            plane.normal = direction(object.required("normal"));
+            plane.material_id = material_id(object.required("material"));
+            plane.quads_before = std::ssize(scene_.quads);
+            scene_.planes.push_back(plane);
+        }
+        object.refuse_unknown_keys();
+    }
+
+    fs::path texture_folder_;
+    Scene scene_;
+    std::map<std::string, std::int32_t> texture_ids_;
+    std::map<std::string, std::int32_t> material_ids_;
+};
+
+}  // namespace
+
+Scene parse_scene(std::string_view json_text, const std::string& name_for_messages, const fs::path& texture_folder) {
+    const nlohmann::json document = parse_json(json_text, name_for_messages);
+    Scene scene = SceneReader(texture_folder).read(JsonCursor(document, name_for_messages));
+    scene.name = valid_utf8(fs::path(name_for_messages).stem().string());
+    return scene;
+}
+
+}  // namespace raypool

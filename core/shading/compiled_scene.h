@@ -1,0 +1,146 @@
+/// The scene as the kernels read it: immutable tables in the precision of the render.
+///
+/// Made by compile(); shared by all threads without locks. Engines and kernels see nothing of the description in
+/// scene.h. A primitive's id counts spheres, then quads, then planes.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/shading/camera.h"
+#include "core/geometry/coincidence.h"
+#include "core/geometry/shape_tables.h"
+#include "core/scene/features.h"
+#include "core/scene/scene.h"
+#include "core/shading/textures.h"
+
+namespace raypool {
+
+/// What shading needs of a primitive and its material: a row of 12 scalars, found by the primitive's id.
+template <class Scalar>
+struct alignas(4 * sizeof(Scalar)) SurfaceRow {
+    enum Column {
+        kCenter = 0,     ///< of a sphere at time 0, three; or the unit normal of a quad or plane
+        kRadius = 3,     ///< of a sphere; of a quad or plane the PlanarMark of the group that a ray which leaves it leaves
+        kMotion = 4,     ///< of the centre from time 0 to 1, three; or a point of the plane of a quad or plane
+        kParameter = 7,  ///< fuzz of metal, index of refraction of glass
+        kColour = 8,     ///< three: albedo or radiance; of a checker the even colour
+        kCode = 11,      ///< the bits of a SurfaceCode
+        kColumns = 12
+    };
+    Scalar value[kColumns];
+};
+
+/// A group's id in the bits of a number of at most -2, which no radius is; and back. Shapes in one plane are a group
+/// (coincidence.h).
+template <class Real>
+struct PlanarMark {
+    static constexpr int kGroupBits = 29;  ///< with so many bits free, a float stays finite and at most -2
+    static constexpr ScalarOf<Int<Real>> kSign = std::bit_cast<ScalarOf<Int<Real>>>(ScalarOf<Real>(-2));
+
+    RAYPOOL_INLINE static Real make(const Int<Real>& group) { return of_bits<Real>(group | Int<Real>(kSign)); }
+    /// Of a row whose kRadius is `radius`: the group of a quad or plane, and `sphere_id` of a sphere. A single ray gets it
+    /// without a branch, which it would often take by surprise. (clang 14 cannot shift registers of 64-bit integers by 63.)
+    RAYPOOL_INLINE static Int<Real> group(const Real& radius, const Int<Real>& sphere_id) {
+        const Int<Real> bits = bits_of<Real>(radius);
+        const Int<Real> group = bits & Int<Real>((1 << kGroupBits) - 1);
+        if constexpr (Simd<Real>) {
+            return select(radius < Real(0), group, sphere_id);
+        } else {
+            const Int<Real> ones_if_planar = bits >> (8 * static_cast<int>(sizeof(Real)) - 1);
+            return (group & ones_if_planar) | (sphere_id & ~ones_if_planar);
+        }
+    }
+};
+
+/// Material and texture in one whole number: Material::Kind, Texture::Kind (of an image its number plus
+/// ImageRepeat's), and the row of the texture.
+template <class Integer>
+struct SurfaceCode {
+    static constexpr int kMaterialBits = 3;
+    static constexpr int kTextureBits = 3;
+    static constexpr std::size_t kMostTextures = std::size_t{1} << (31 - kMaterialBits - kTextureBits);
+
+    Integer code;
+    [[nodiscard]] RAYPOOL_INLINE Integer material() const { return code & Integer((1 << kMaterialBits) - 1); }
+    [[nodiscard]] RAYPOOL_INLINE Integer texture() const {
+        return code >> kMaterialBits & Integer((1 << kTextureBits) - 1);
+    }
+    [[nodiscard]] RAYPOOL_INLINE Integer texture_row() const { return code >> (kMaterialBits + kTextureBits); }
+    static constexpr Integer make(Integer material, Integer texture, Integer texture_row) {
+        return material + (texture << kMaterialBits) + (texture_row << (kMaterialBits + kTextureBits));
+    }
+};
+
+template <class Scalar>
+struct alignas(4 * sizeof(Scalar)) TextureRow {
+    enum Column { kOdd = 0, kScaleHigh = 3, kOffset = 4, kScaleLow = 7, kColumns = 8 };
+    Scalar value[kColumns];  ///< of a checker: the odd colour (3), 1 / edge in two parts, the offset (3)
+};
+
+/// Surface coordinates of quads and planes: (p - corner) . dual_u and (p - corner) . dual_v.
+template <class Scalar>
+struct alignas(4 * sizeof(Scalar)) PlanarRow {
+    enum Column { kCorner = 0, kDualU = 4, kDualV = 8, kColumns = 12 };
+    Scalar value[kColumns];
+};
+
+template <class Scalar>
+struct Sky {
+    Vec3<Scalar> middle;  ///< radiance at the horizon, ...
+    Vec3<Scalar> slope;   ///< ... plus this times the direction's y
+};
+
+template <class Scalar>
+struct CompiledScene : ShapeTables<Scalar> {
+    Features features;
+    std::int64_t width = 0;  ///< of the image, in pixels
+    std::int64_t height = 0;
+    Camera<Scalar> camera;
+    Sky<Scalar> sky;
+    double max_radiance = 0;  ///< no path carries more to the image in any channel
+    double max_albedo = 0;    ///< no hit leaves a path more of its throughput in any channel
+
+    std::vector<SurfaceRow<Scalar>> surfaces;  ///< by primitive id
+    std::vector<TextureRow<Scalar>> textures;  ///< by texture id
+    std::vector<PlanarRow<Scalar>> planars;        ///< of the last primitives, by id less first_planar()
+    std::vector<ImageView<Scalar>> images;     ///< by texture id, beside `textures`
+    std::vector<Scalar> texels;
+
+    /// Radiance that a limit of depth cuts off a pixel, on average over its paths: at most this in any channel.
+    [[nodiscard]] double truncation_bound(std::int32_t depth) const {
+        return max_radiance * std::pow(max_albedo, depth);
+    }
+
+    /// The id of the first quad or plane.
+    [[nodiscard]] std::size_t first_planar() const { return surfaces.size() - planars.size(); }
+    [[nodiscard]] std::int64_t pixel_count() const { return width * height; }
+    [[nodiscard]] std::size_t bytes() const;  ///< of all tables, with this
+
+    /// Calls visit(std::vector&) for every table: the one list of them.
+    template <class Self, class Visit>
+    static void for_each_table(Self& self, Visit visit) {
+        visit(self.surfaces);
+        visit(self.textures);
+        visit(self.planars);
+        visit(self.images);
+        visit(self.texels);
+        ShapeTables<Scalar>::for_each_table(self, visit);
+    }
+};
+
+/// Refuses (InputError) an image of more than 2^32 pixels, or more primitives than ids. Shapes that coincide count once
+/// (coincidence.h); one that is hidden keeps its id and its row, and is in no block.
+template <class Scalar>
+CompiledScene<Scalar> compile(const Scene& scene);
+/// The same with what coincides said by the caller.
+template <class Scalar>
+CompiledScene<Scalar> compile(const Scene& scene, const Coincidence& coincidence);
+
+extern template CompiledScene<float> compile(const Scene&);
+extern template CompiledScene<double> compile(const Scene&);
+extern template CompiledScene<float> compile(const Scene&, const Coincidence&);
+extern template CompiledScene<double> compile(const Scene&, const Coincidence&);
+
+}  // namespace raypool

@@ -1,0 +1,82 @@
+/// The closest hit by asking every shape, one by one: what any walk through any tree must return, to the last bit.
+///
+/// The rules are those of core/geometry/shapes.h: a shape that has a box counts only where the ray is inside its own padded box;
+/// of equal distances the smaller id counts.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/traverse.h"
+
+namespace raypool::test {
+
+template <class Scalar>
+Vec3<Scalar> lane_of(const auto& components, int lane) {
+    return vec3<Scalar>(components[0][lane], components[1][lane], components[2][lane]);
+}
+
+template <class Scalar>
+void keep_closer(Scalar t, std::int32_t id, Hit<Scalar>& hit) {
+    if (t < hit.t || (t == hit.t && t < kInfinity<Scalar> && id < hit.primitive_id)) {
+        hit.t = t;
+        hit.primitive_id = id;
+    }
+}
+
+/// Distance to the shape in a lane of a block; infinity where its box rules a hit out.
+template <InBox in_box, class Scalar, class Block>
+requires requires(Block b) {
+    b.radius;
+}
+Scalar shape_distance(const Block& block, int lane, const Ray<Scalar>& ray, std::int32_t leaving_id) {
+    const Vec3<Scalar> center =
+        center_at<Scalar>(lane_of<Scalar>(block.center, lane), lane_of<Scalar>(block.motion, lane), ray.time);
+    const Scalar t =
+        sphere_distance<Scalar>(ray.origin, ray.direction, center, block.radius[lane], block.id[lane] == leaving_id);
+    if (in_box == InBox::No || t == kInfinity<Scalar>) return t;
+    const Scalar r = block.padded_radius[lane];
+    const Vec3<Scalar> low = vec3<Scalar>(center[0] - r, center[1] - r, center[2] - r);
+    const Vec3<Scalar> high = vec3<Scalar>(center[0] + r, center[1] + r, center[2] + r);
+    const RayInverse<Scalar> inverse = ray_inverse<Scalar>(ray.direction);
+    return is_inside_box<Scalar>(low, high, ray.origin, inverse, t) ? t : kInfinity<Scalar>;
+}
+
+template <InBox in_box, class Scalar, class Block>
+requires requires(Block b) {
+    b.dual_u;
+}
+Scalar shape_distance(const Block& block, int lane, const Ray<Scalar>& ray, std::int32_t leaving_id) {
+    const Vec3<Scalar> point = lane_of<Scalar>(block.point, lane);
+    const Vec3<Scalar> normal = lane_of<Scalar>(block.normal, lane);
+    const bool is_leaving = block.group[lane] == leaving_id;
+    if (in_box == InBox::No) return plane_distance<Scalar>(ray.origin, ray.direction, point, normal, is_leaving);
+    const Scalar t =
+        quad_distance<Scalar>(ray.origin, ray.direction, point, normal, lane_of<Scalar>(block.corner, lane),
+                              lane_of<Scalar>(block.dual_u, lane), lane_of<Scalar>(block.dual_v, lane), is_leaving);
+    if (t == kInfinity<Scalar>) return t;
+    const RayInverse<Scalar> inverse = ray_inverse<Scalar>(ray.direction);
+    const bool is_inside = is_inside_box<Scalar>(lane_of<Scalar>(block.low, lane), lane_of<Scalar>(block.high, lane),
+                                                 ray.origin, inverse, t);
+    return is_inside ? t : kInfinity<Scalar>;
+}
+
+template <InBox in_box, class Scalar, class Block>
+void ask_all(const std::vector<Block>& blocks, const Ray<Scalar>& ray, std::int32_t leaving_id, Hit<Scalar>& hit) {
+    for (const Block& block : blocks)
+        for (int lane = 0; lane < Block::kLanes; ++lane)
+            if (block.id[lane] != kNoPrimitive)
+                keep_closer<Scalar>(shape_distance<in_box, Scalar>(block, lane, ray, leaving_id), block.id[lane], hit);
+}
+
+template <class Scalar>
+Hit<Scalar> brute_force_hit(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray, std::int32_t leaving_id) {
+    Hit<Scalar> hit;
+    ask_all<InBox::No>(scene.large_spheres, ray, leaving_id, hit);
+    ask_all<InBox::No>(scene.planes, ray, leaving_id, hit);
+    ask_all<InBox::Yes>(scene.sphere_tree.blocks, ray, leaving_id, hit);
+    ask_all<InBox::Yes>(scene.quad_tree.blocks, ray, leaving_id, hit);
+    return hit;
+}
+
+}  // namespace raypool::test

@@ -1,0 +1,460 @@
+/// The scene file: what it may say, and the exact words with which the rest is refused.
+#include "core/scene/scene_reader.h"
+#include "core/scene/scene_hash.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/base/json_parser.h"
+#include "tests/core/image/image_samples.h"
+
+namespace raypool {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const fs::path kScenes = fs::path(RAYPOOL_SOURCE_DIR) / "scenes";
+
+std::string file_text(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    EXPECT_TRUE(stream.good()) << file;
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string with(const std::string& text, const std::string& part, const std::string& instead) {
+    const std::size_t at = text.find(part);
+    EXPECT_NE(at, std::string::npos) << part;
+    return std::string(text).replace(at, part.size(), instead);
+}
+
+/// What the InputError of `act` says; empty when there is none.
+template <class Act>
+std::string refusal(Act act) {
+    try {
+        act();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::string refusal_of_text(const std::string& text) {
+    return refusal([&] { parse_scene(text, "a.json", kScenes / "textures"); });
+}
+
+const std::string kSmallest = R"({
+  "description": "nothing",
+  "camera": {"look_from": [0, 0, 1], "look_at": [0, 0, 0]},
+  "background": [0.25, 0.5, 1],
+  "shapes": []
+})";
+
+/// An empty folder of this test process alone, removed with what is in it.
+class SceneFolder : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("raypool_scene_reader_" + std::to_string(getpid()));
+        fs::create_directories(folder_ / "scene");
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    fs::path write(const std::string& name, const std::string& text) const {
+        std::ofstream(folder_ / name, std::ios::binary) << text;
+        return folder_ / name;
+    }
+
+    std::string refusal_of_texture(const std::string& file) const {
+        const std::string texture = R"("textures": {"t": {"type": "image", "file": ")" + file + R"("}}, "shapes")";
+        return refusal([&] { parse_scene(with(kSmallest, "\"shapes\"", texture), "a.json", folder_ / "scene"); });
+    }
+
+    fs::path folder_;
+};
+
+TEST(SceneReader, TheSmallestSceneHasTheDocumentedDefaults) {
+    const Scene scene = parse_scene(kSmallest, "folder/smallest.json", ".");
+    EXPECT_EQ(scene.name, "smallest");
+    EXPECT_EQ(scene.description, "nothing");
+    EXPECT_EQ(scene.width, 400);
+    EXPECT_EQ(scene.height, 225);
+    EXPECT_EQ(scene.camera.up, Vector3d(0, 1, 0));
+    EXPECT_EQ(scene.camera.vertical_fov_degrees, 40);
+    EXPECT_EQ(scene.camera.defocus_angle_degrees, 0);
+    EXPECT_EQ(scene.camera.shutter_open, 0);
+    EXPECT_EQ(scene.camera.shutter_close, 0);
+    EXPECT_EQ(scene.background.bottom, Vector3d(0.25, 0.5, 1));
+    EXPECT_EQ(scene.background.top, Vector3d(0.25, 0.5, 1));
+    EXPECT_TRUE(scene.spheres.empty() && scene.quads.empty() && scene.planes.empty());
+    EXPECT_TRUE(scene.materials.empty() && scene.textures.empty());
+}
+
+TEST(SceneReader, EveryKeyArrivesInTheScene) {
+    const json shared = json::parse(file_text(fs::path(RAYPOOL_SOURCE_DIR) / "tests/scenes/refusals.json"));
+    const Scene scene = parse_scene(shared["base"].dump(), "base", kScenes / "textures");
+    EXPECT_EQ(scene.width, 40);
+    EXPECT_EQ(scene.height, 30);
+    EXPECT_EQ(scene.camera.look_from, Vector3d(0, 1, 5));
+    EXPECT_EQ(scene.camera.look_at, Vector3d(0, 1, 0));
+    EXPECT_EQ(scene.camera.defocus_angle_degrees, 1);
+    EXPECT_EQ(scene.camera.focus_distance, 5);
+    EXPECT_EQ(scene.camera.shutter_close, 1);
+    EXPECT_EQ(scene.background.top, Vector3d(0.5, 0.7, 1));
+
+    ASSERT_EQ(scene.spheres.size(), 1u);
+    EXPECT_EQ(scene.spheres[0].center0, Vector3d(0, 1, 0));
+    EXPECT_EQ(scene.spheres[0].center1, Vector3d(0, 1.5, 0));
+    EXPECT_EQ(scene.spheres[0].radius, 1);
+    const Material& glass = scene.materials.at(scene.spheres[0].material_id);
+    EXPECT_EQ(glass.kind, Material::Kind::Dielectric);
+    EXPECT_EQ(glass.ior, 1.5);
+
+    ASSERT_EQ(scene.quads.size(), 1u);
+    EXPECT_EQ(scene.quads[0].corner, Vector3d(0, 0, -2));
+    EXPECT_EQ(scene.quads[0].edge_u, Vector3d(1, 0, 0));
+    EXPECT_EQ(scene.quads[0].edge_v, Vector3d(0, 1, 0));
+    const Material& lamp = scene.materials.at(scene.quads[0].material_id);
+    EXPECT_EQ(lamp.kind, Material::Kind::Emissive);
+    EXPECT_EQ(scene.textures.at(lamp.texture_id).kind, Texture::Kind::Solid);
+    EXPECT_EQ(scene.textures.at(lamp.texture_id).even, Vector3d(5, 5, 5));
+
+    ASSERT_EQ(scene.planes.size(), 1u);
+    EXPECT_EQ(scene.planes[0].normal, Vector3d(0, 1, 0));
+    const Material& floor = scene.materials.at(scene.planes[0].material_id);
+    EXPECT_EQ(floor.kind, Material::Kind::Diffuse);
+    const Texture& blocks = scene.textures.at(floor.texture_id);
+    EXPECT_EQ(blocks.kind, Texture::Kind::Checker3d);
+    EXPECT_EQ(blocks.odd, Vector3d(1, 1, 1));
+    EXPECT_EQ(blocks.scale, 0.5);
+    EXPECT_EQ(blocks.offset, Vector3d(0, 0.25, 0));
+
+    const auto is_metal = [](const Material& material) { return material.kind == Material::Kind::Metal; };
+    const auto metal = std::find_if(scene.materials.begin(), scene.materials.end(), is_metal);
+    ASSERT_NE(metal, scene.materials.end());
+    EXPECT_EQ(metal->fuzz, 0.1);
+    EXPECT_EQ(scene.textures.at(metal->texture_id).even, Vector3d(0.9, 0.9, 0.9));
+
+    const auto is_image = [](const Texture& texture) { return texture.kind == Texture::Kind::Image; };
+    const auto map = std::find_if(scene.textures.begin(), scene.textures.end(), is_image);
+    ASSERT_NE(map, scene.textures.end());
+    EXPECT_EQ(map->image->width, 64);
+    EXPECT_EQ(map->image->height, 32);
+}
+
+TEST(SceneReader, TellsHowAnImageWrapsAndItsHashCoversIt) {
+    const auto read = [](const std::string& wrap) {
+        const std::string texture =
+            R"("textures": {"t": {"type": "image", "file": "map.png")" + wrap + R"(}}, "shapes")";
+        return parse_scene(with(kSmallest, "\"shapes\"", texture), "a.json", kScenes / "textures");
+    };
+    const Scene by_shape = read(""), repeat = read(R"(, "wrap": "repeat")"), clamp = read(R"(, "wrap": "clamp")");
+    EXPECT_EQ(by_shape.textures[0].wrap, Texture::Wrap::ByShape);
+    EXPECT_EQ(repeat.textures[0].wrap, Texture::Wrap::Repeat);
+    EXPECT_EQ(clamp.textures[0].wrap, Texture::Wrap::Clamp);
+    EXPECT_NE(scene_hash(by_shape), scene_hash(repeat));
+    EXPECT_NE(scene_hash(by_shape), scene_hash(clamp));
+    EXPECT_NE(scene_hash(repeat), scene_hash(clamp));
+}
+
+TEST(SceneReader, RefusesEachBrokenRuleNamingItsPlaceAndTheValue) {
+    const json shared = json::parse(file_text(fs::path(RAYPOOL_SOURCE_DIR) / "tests/scenes/refusals.json"));
+    ASSERT_GT(shared["cases"].size(), 100u);
+    for (const json& test : shared["cases"]) {
+        const std::string text = shared["base"].patch(test["patch"]).dump();
+        EXPECT_EQ(refusal_of_text(text), "a.json: " + test["says"].get<std::string>()) << test["patch"];
+    }
+}
+
+TEST(SceneReader, RefusesWhatIsNotJsonNamingLineAndColumn) {
+    const std::pair<std::string, std::string> cases[] = {
+        {"", "a.json:1:1: syntax error while parsing value - unexpected end of input"},
+        {"{\n  \"a\": }", "a.json:2:8: syntax error while parsing value - unexpected '}'"},
+        {"{\"a\": NaN}", "a.json:1:7: syntax error while parsing value - invalid literal"},
+        {"{\"a\": Infinity}", "a.json:1:7: syntax error while parsing value - invalid literal"},
+        {"{\"a\": 01}", "a.json:1:8: syntax error while parsing object - unexpected number literal"},
+        {"{\"a\": 1,}", "a.json:1:9: syntax error while parsing object key - unexpected '}'"},
+        {"{'a': 1}", "a.json:1:2: syntax error while parsing object key - invalid literal"},
+        {"// why\n{}", "a.json:1:1: syntax error while parsing value - invalid literal"},
+        {"{} {}", "a.json:1:4: syntax error while parsing value - unexpected '{'; expected end of input"},
+        {"{\n\n\"a", "a.json:3:3: syntax error while parsing object key - invalid string: missing closing quote"},
+        {"{\"\xff\": 1}", "a.json:1:3: syntax error while parsing object key - invalid string: ill-formed UTF-8 byte"},
+    };
+    for (const auto& [text, beginning] : cases) {
+        EXPECT_EQ(refusal_of_text(text).substr(0, beginning.size()), beginning) << text;
+    }
+    EXPECT_NE(refusal_of_text(kSmallest + " x"), "");
+    EXPECT_EQ(refusal_of_text(kSmallest + "\n \t\r\n"), "");
+}
+
+TEST(SceneReader, RefusesNumbersBeyondDoublePrecision) {
+    EXPECT_EQ(refusal_of_text(with(kSmallest, "[0, 0, 1]", "[0, 0, 1e400]")),
+              "a.json: /camera/look_from/2: must be a number within double precision, got 1e400");
+    EXPECT_EQ(refusal_of_text(with(kSmallest, "[0, 0, 1]", "-1e400")),
+              "a.json: /camera/look_from: must be a number within double precision, got -1e400");
+    EXPECT_EQ(refusal_of_text("1e400"), "a.json: must be a number within double precision, got 1e400");
+    EXPECT_EQ(refusal_of_text(with(kSmallest, "[0, 0, 1]", "[0, 0, 1" + std::string(300, '0') + "]")),
+              "a.json: /camera/look_from/2: must be within [-1e+12, 1e+12], got 1e+300");
+}
+
+TEST(SceneReader, RefusesKeysThatAppearTwice) {
+    EXPECT_EQ(refusal_of_text(with(kSmallest, "\"shapes\"", "\"background\": [1, 1, 1], \"shapes\"")),
+              "a.json: /background: must appear once, got it twice");
+    EXPECT_EQ(refusal_of_text(R"({"materials": {"a": 1, "b": 2, "a": 3}})"),
+              "a.json: /materials/a: must appear once, got it twice");
+    EXPECT_EQ(refusal_of_text(R"({"shapes": [0, {"x": 1, "x": 1}]})"),
+              "a.json: /shapes/1/x: must appear once, got it twice");
+}
+
+TEST(SceneReader, RefusesDeepNestingWithoutDescending) {
+    constexpr std::size_t kBomb = 4'000'000;
+    std::string objects;
+    for (int i = 0; i < 100'000; ++i) objects += "{\"a\":";
+    std::string place;
+    for (std::size_t i = 0; i < kMaxJsonDepth; ++i) place += "/0";
+    EXPECT_EQ(refusal_of_text(std::string(kBomb, '[')),
+              "a.json: " + place + ": must not nest deeper than 32 levels, got more");
+    EXPECT_NE(refusal_of_text(objects).find("must not nest deeper than 32 levels"), std::string::npos);
+
+    const std::string deepest = std::string(kMaxJsonDepth, '[') + std::string(kMaxJsonDepth, ']');
+    EXPECT_EQ(refusal_of_text(deepest), "a.json: must be an object, got an array of 1");
+}
+
+TEST(SceneReader, AMessageIsOneLineOfPrintableTextWhateverTheFileHolds) {
+    const std::string many(5'000'000, 'x');
+    const std::string texts[] = {
+        with(kSmallest, "\"shapes\"", "\"a\\nb\\u0000\\u001b[31m\": 1, \"shapes\""),
+        with(kSmallest, "\"shapes\": []", "\"shapes\": [{\"type\": \"\\n\\n\"}]"),
+        "{\"a\n\n",
+        "{\"\x1b[31m",
+        many,
+        "\"" + many + "\"",
+        "{\"" + many + "\": 1}",
+    };
+    for (const std::string& text : texts) {
+        const std::string message = refusal_of_text(text);
+        EXPECT_NE(message, "");
+        EXPECT_LT(message.size(), 1100u);
+        EXPECT_TRUE(std::none_of(message.begin(), message.end(), [](char c) { return c >= 0 && c < 0x20; })) << message;
+    }
+}
+
+TEST(SceneReader, AcceptsTheEdgesOfItsRanges) {
+    const std::string shapes = R"("materials": {"m": {"type": "dielectric", "ior": 10},
+        "w": {"type": "diffuse", "albedo": [0, 1, 0]}, "e": {"type": "emissive", "radiance": [1e6, 0, 0]}},
+        "image": {"width": 65536.0, "height": 1},
+        "shapes": [{"type": "sphere", "center": [1e12, -1e12, 0], "radius": 1e-12, "material": "m"},
+                   {"type": "sphere", "center": [0, -0.0, 0], "radius": 1e12, "material": "m"}])";
+    const Scene scene = parse_scene(with(kSmallest, "\"shapes\": []", shapes), "a.json", ".");
+    EXPECT_EQ(scene.width, 65536);
+    EXPECT_EQ(scene.spheres.size(), 2u);
+    EXPECT_EQ(scene.spheres[0].center1, scene.spheres[0].center0);
+}
+
+TEST(SceneReader, TheDocumentedExampleParses) {
+    const std::string document = file_text(fs::path(RAYPOOL_SOURCE_DIR) / "docs/scene-format.md");
+    const std::size_t begin = document.find("```json\n");
+    const std::size_t end = document.find("```", begin + 8);
+    ASSERT_NE(end, std::string::npos);
+    const Scene scene = parse_scene(document.substr(begin + 8, end - begin - 8), "example.json", kScenes / "textures");
+    EXPECT_FALSE(scene.spheres.empty());
+}
+
+TEST(SceneReader, EveryCommittedSceneParsesUnderItsFileName) {
+    int count = 0;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kScenes)) {
+        const std::string file = entry.path().filename().string();
+        if (!file.ends_with(".json") || file.ends_with(".schema.json")) continue;
+        const Scene scene = read_scene(entry.path());
+        EXPECT_EQ(scene.name, entry.path().stem().string());
+        EXPECT_FALSE(scene.spheres.empty()) << file;
+        ++count;
+    }
+    EXPECT_GE(count, 8);
+}
+
+TEST(SceneReader, PaperIsTheSceneOfThePaper) {
+    const Scene scene = builtin_scene("paper");
+    EXPECT_EQ(scene.width, 400);
+    EXPECT_EQ(scene.height, 225);
+    EXPECT_NEAR(static_cast<double>(scene.spheres.size()), 484, 4);
+    int moving_count = 0;
+    for (const Sphere& sphere : scene.spheres) {
+        const Vector3d motion = sphere.center1 - sphere.center0;
+        const bool is_diffuse = scene.materials.at(sphere.material_id).kind == Material::Kind::Diffuse;
+        EXPECT_EQ(motion.norm() > 0, is_diffuse && sphere.radius == 0.2);
+        EXPECT_TRUE(motion.x() == 0 && motion.z() == 0 && motion.y() >= 0 && motion.y() <= 0.5);
+        moving_count += motion.norm() > 0;
+    }
+    EXPECT_NEAR(moving_count, 0.8 * 480, 4 * 8.8);  // four standard deviations of a binomial count
+}
+
+TEST(SceneReader, BuiltinScenesAreTheFilesOfTheSourceTree) {
+    std::vector<std::string> expected;
+    for (const fs::directory_entry& entry : fs::directory_iterator(kScenes)) {
+        const std::string file = entry.path().filename().string();
+        if (file.ends_with(".json") && !file.ends_with(".schema.json"))
+            expected.push_back(entry.path().stem().string());
+    }
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(builtin_scene_names(), expected);
+    for (const char* name :
+         {"cornell", "furnace", "glass_stack", "half_sky", "mirror_corridor", "one_sphere", "paper"}) {
+        EXPECT_TRUE(std::count(expected.begin(), expected.end(), name)) << name;
+    }
+
+    for (const std::string& name : expected) {
+        const Scene built_in = builtin_scene(name);
+        const Scene from_file = read_scene(kScenes / (name + ".json"));
+        EXPECT_EQ(built_in.name, name);
+        EXPECT_EQ(built_in.description, from_file.description);
+        EXPECT_EQ(built_in.spheres.size(), from_file.spheres.size());
+        for (const Texture& texture : built_in.textures) EXPECT_NE(texture.kind, Texture::Kind::Image) << name;
+    }
+}
+
+TEST(SceneReader, AnUnknownNameListsTheBuiltinScenes) {
+    EXPECT_EQ(refusal([] { load_scene("no_such"); }),
+              "no_such: no such file, and no built-in scene of that name (there are cornell, furnace, glass_stack, "
+              "half_sky, mirror_corridor, one_sphere, paper)");
+    EXPECT_NE(refusal([] { load_scene(""); }), "");
+    EXPECT_NE(refusal([] { load_scene(std::string(100'000, 'x')); }), "");
+    EXPECT_EQ(load_scene("furnace").name, "furnace");
+}
+
+TEST_F(SceneFolder, AFileWinsOverABuiltinSceneAndABuiltinSceneOverAFolder) {
+    const fs::path before = fs::current_path();
+    fs::current_path(folder_);
+    write("furnace", kSmallest);
+    fs::create_directory("paper");
+    const Scene file = load_scene("furnace");
+    const Scene builtin = load_scene("paper");
+    fs::current_path(before);
+    EXPECT_EQ(file.description, "nothing");
+    EXPECT_EQ(builtin.name, "paper");
+}
+
+TEST_F(SceneFolder, AFileThatCannotBeReadIsRefusedWithItsCause) {
+    const std::string absent = (folder_ / "absent.json").string();
+    EXPECT_EQ(refusal([&] { read_scene(absent); }), absent + ": cannot be read: No such file or directory");
+    EXPECT_EQ(refusal([&] { read_scene(folder_); }), folder_.string() + ": cannot be read: Is a directory");
+    EXPECT_EQ(refusal([&] { load_scene(folder_.string()); }), folder_.string() + ": cannot be read: Is a directory");
+    if (geteuid() == 0) GTEST_SKIP() << "the superuser may read every file";
+    const fs::path locked = write("locked.json", kSmallest);
+    fs::permissions(locked, fs::perms::none);
+    EXPECT_EQ(refusal([&] { read_scene(locked); }), locked.string() + ": cannot be read: Permission denied");
+}
+
+TEST(SceneReader, AnEndlessFileIsRefusedAtTheLimit) {
+    EXPECT_EQ(refusal([] { read_scene("/dev/zero"); }), "/dev/zero: must not be longer than 268435456 bytes");
+}
+
+TEST_F(SceneFolder, TexturesAreFoundBesideTheSceneFile) {
+    fs::copy_file(kScenes / "textures/map.png", folder_ / "scene/map.png");
+    write("scene/a.json", file_text(kScenes / "textures/textures.json"));
+    EXPECT_EQ(read_scene(folder_ / "scene/a.json").name, "a");
+
+    const fs::path before = fs::current_path();
+    fs::current_path(folder_ / "scene");
+    EXPECT_EQ(refusal([] { read_scene("a.json"); }), "");
+    fs::current_path(before);
+}
+
+TEST_F(SceneFolder, ATextureStaysBelowTheScenesFolderWhereverLinksLead) {
+    fs::copy_file(kScenes / "textures/map.png", folder_ / "outside.png");
+    fs::copy_file(kScenes / "textures/map.png", folder_ / "scene/map.png");
+    fs::create_symlink("map.png", folder_ / "scene/inward.png");
+    fs::create_symlink("../outside.png", folder_ / "scene/outward.png");
+    fs::create_directory_symlink("..", folder_ / "scene/up");
+    fs::create_symlink("loop.png", folder_ / "scene/loop.png");
+    fs::create_directory_symlink("scene", folder_ / "scene_by_link");
+
+    EXPECT_EQ(refusal_of_texture("map.png"), "");
+    EXPECT_EQ(refusal_of_texture("./map.png"), "");
+    EXPECT_EQ(refusal_of_texture("inward.png"), "");
+    const std::string outside = fs::canonical(folder_ / "outside.png").string();
+    const std::string refused =
+        "a.json: /textures/t/file: must stay below the scene's folder, got a link to " + outside;
+    EXPECT_EQ(refusal_of_texture("outward.png"), refused);
+    EXPECT_EQ(refusal_of_texture("up/outside.png"), refused);
+    EXPECT_NE(refusal_of_texture("loop.png"), "");
+
+    write("scene/a.json",
+          with(kSmallest, "\"shapes\"", R"("textures": {"t": {"type": "image", "file": "map.png"}}, "shapes")"));
+    EXPECT_EQ(refusal([&] { read_scene(folder_ / "scene_by_link/a.json"); }), "");
+}
+
+TEST_F(SceneFolder, TexturesTogetherHoldNoMoreThanTheirLimit) {
+    fs::copy_file(kScenes / "textures/map.png", folder_ / "scene/map.png");
+    // As large as all images together may be, and so one too many after the other: refused before it is decoded.
+    constexpr std::size_t kSide = kMaxTextureSide;
+    const std::vector<std::vector<png_byte>> rows(kSide, std::vector<png_byte>(kSide / 8));
+    write("scene/whole.png", png_of(kSide, kSide, 1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, 0, rows));
+    write("scene/a.json", with(kSmallest, "\"shapes\"", R"("textures": {"a": {"type": "image", "file": "map.png"},
+        "b": {"type": "image", "file": "whole.png"}}, "shapes")"));
+    const std::string message = refusal([&] { read_scene(folder_ / "scene/a.json"); });
+    EXPECT_NE(message.find("/textures/b/file: must name a PNG image that can be read"), std::string::npos) << message;
+    EXPECT_NE(message.find("got 16384 x 16384"), std::string::npos) << message;
+}
+
+TEST_F(SceneFolder, AFileIsReadUpToItsLimitAndNoFurther) {
+    constexpr std::size_t kLimit = std::size_t{256} << 20;
+    std::string text(kLimit, 'x');  // read whole, it is no JSON: quicker to refuse than a scene so long is to parse
+    EXPECT_NE(refusal([&] { read_scene(write("scene/a.json", text)); }).find("a.json:1:1: syntax error"),
+              std::string::npos);
+    text += ' ';
+    EXPECT_NE(refusal([&] { read_scene(write("scene/a.json", text)); }).find("must not be longer than"),
+              std::string::npos);
+}
+
+TEST_F(SceneFolder, AnAbsentOrBrokenTextureIsRefusedNamingSceneAndImage) {
+    write("scene/broken.png", "no image");
+    fs::create_directory(folder_ / "scene/folder.png");
+    for (const std::string name :
+         {"absent.png", "broken.png", "folder.png", "absent/deep.png", "broken.png/deep.png", "."}) {
+        const std::string message = refusal_of_texture(name);
+        const std::string beginning = "a.json: /textures/t/file: must name a PNG image that can be read, got ";
+        EXPECT_EQ(message.substr(0, beginning.size()), beginning);
+        EXPECT_NE(message.find(name), std::string::npos) << message;
+    }
+    EXPECT_NE(refusal_of_texture(std::string(5000, 'x') + ".png"), "");
+    EXPECT_NE(refusal_of_texture("map.png\\u0000/../../etc"), "");
+}
+
+TEST(SceneReader, EveryTruncationOfASceneIsRefused) {
+    const std::string paper = file_text(kScenes / "paper.json");
+    const std::size_t last_brace = paper.rfind('}');
+    for (std::size_t length = 0; length < paper.size(); length += length < 2000 ? 1 : 997) {
+        ASSERT_NE(refusal_of_text(paper.substr(0, std::min(length, last_brace))), "") << length;
+    }
+    EXPECT_NE(refusal_of_text(paper.substr(0, last_brace)), "");
+    EXPECT_EQ(refusal_of_text(paper), "");
+}
+
+TEST(SceneReader, DamagedScenesParseOrAreRefused) {
+    std::mt19937 random(1);
+    const std::string scenes[] = {file_text(kScenes / "textures/textures.json"), file_text(kScenes / "cornell.json")};
+    int refused_count = 0;
+    constexpr int kRounds = 4000;
+    for (int round = 0; round < kRounds; ++round) {
+        std::string text = scenes[round % 2];
+        for (unsigned flips = 1 + random() % 4; flips > 0; --flips) {
+            text[random() % text.size()] ^= static_cast<char>(1u << (random() % 8));
+        }
+        refused_count += !refusal_of_text(text).empty();  // anything but an InputError fails the test
+    }
+    EXPECT_GT(refused_count, kRounds / 4);
+    EXPECT_LT(refused_count, kRounds);  // some damage only changes a digit or a letter of the description
+}
+
+}  // namespace
+}  // namespace raypool
