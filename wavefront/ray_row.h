@@ -7,12 +7,12 @@
 
 namespace raypool::wavefront {
 
-/// Integers are kept as the value of a scalar. The first eight are what a test of boxes reads, and the
-/// last eight what a test of spheres reads.
+/// The first eight are what a test of boxes reads, and the last eight what a test of spheres reads.
 template <class Scalar>
 struct alignas(16) RayRow {
     enum Column { kScale = 0, kDistance = 3, kOrigin = 4, kTime = 7, kDirection = 8, kLeaving = 11, kColumns = 12 };
-    Scalar value[kColumns];  ///< kScale: 1 / direction; kDistance: of the closest hit so far
+    /// kScale: 1 / direction; kDistance: of the closest hit so far; kLeaving: the bits of the id that the ray leaves.
+    Scalar value[kColumns];
 };
 
 /// What streams find and update: a row a ray, and apart from it, in the order of the rays, their hits.

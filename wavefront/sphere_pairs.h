@@ -67,7 +67,7 @@ class SpherePairs {
             const Ray<Real> ray{columns(row, 0), columns(row, Row::kDirection - Row::kOrigin),
                                 row[Row::kTime - Row::kOrigin]};
             const unsigned valid = first + kRays <= count ? (1U << kRays) - 1 : (1U << (count - first)) - 1;
-            find<features, Real>(ray, to_int<Real>(row[Row::kLeaving - Row::kOrigin]),
+            find<features, Real>(ray, bits_of<Real>(row[Row::kLeaving - Row::kOrigin]),
                               Uint32<Real>(list + first, stdx::element_aligned), valid, work);
         }
     }
@@ -78,7 +78,7 @@ class SpherePairs {
         constexpr std::size_t kRays = kLanes<Real>;
         if (filled_ == 0) return;
         Scalar id[kShapes];
-        for (int i = 0; i < kShapes; ++i) id[i] = static_cast<Scalar>(block_.id[i]);
+        for (int i = 0; i < kShapes; ++i) id[i] = of_bits<Scalar>(block_.id[i]);
         // The tail of the last register repeats the last pair: to test it twice changes nothing.
         std::fill_n(pairs_ + filled_, kRays, pairs_[filled_ - 1]);
         for (std::size_t first = 0; first < filled_; first += kRays) {
@@ -92,7 +92,8 @@ class SpherePairs {
             Vec3<Real> center = pick3<Real>(block_.center, which);
             if constexpr (features.motion)
                 center = center_at<Real>(center, pick3<Real>(block_.motion, which), row[Row::kTime]);
-            const Mask<Real> is_leaving = row[Row::kLeaving] == pick<kShapes, Real>(id, which);
+            const Mask<Real> is_leaving =
+                as_mask<Real>(bits_of<Real>(row[Row::kLeaving]) == bits_of<Real>(pick<kShapes, Real>(id, which)));
             const Real t = sphere_distance<Real>(origin, columns(row, Row::kDirection), center,
                                                  pick<kShapes, Real>(block_.radius, which), is_leaving);
             Mask<Real> is_closer = t <= row[Row::kDistance] && t < Real(kInfinity<Real>);

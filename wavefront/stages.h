@@ -353,7 +353,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         const Vec3<Real>& origin = rays.ray.origin;
         const Vec3<Real>& direction = rays.ray.direction;
         const Real column[12] = {scale[0], scale[1], scale[2], hit.t, origin[0], origin[1], origin[2], rays.ray.time,
-                                 direction[0], direction[1], direction[2], to_real<Real>(rays.leaving_id)};
+                                 direction[0], direction[1], direction[2], of_bits<Real>(rays.leaving_id)};
         store_rows<12, Real>(stream_.rows()[i].value, column);
     }
 

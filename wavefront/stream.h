@@ -4,7 +4,7 @@
 /// of rays that entered it, a register's worth at a time, tests each child's box against them, and appends those that
 /// enter to the child's list. Incoherent rays so fill whole registers as long as lists are long, which is what a pool
 /// is for; where a list has become short, its rays go on one by one, each against a register of boxes. Rays are read as
-/// rows, so that any sixteen of them can be fetched by transposing. A list holds where rows begin, in scalars.
+/// rows, so that any sixteen of them can be fetched by transposing. A list holds where rows begin, counted in scalars.
 #pragma once
 
 #include <cstddef>
@@ -158,7 +158,7 @@ class StreamWalk {
             WideRays<Real> rays;
             rays.ray = {columns(row, Row::kOrigin), columns(row, Row::kDirection), row[Row::kTime]};
             rays.inverse = inverse_of_scale<Real>(columns(row, Row::kScale));
-            rays.leaving_id = to_int<Real>(row[Row::kLeaving]);
+            rays.leaving_id = bits_of<Real>(row[Row::kLeaving]);
             Hit<Real> hit;
             hit.t = row[Row::kDistance];
             hit.primitive_id = Int<Real>(kLargestId);  // a tie with the hit so far is settled below, where it is rare
@@ -182,7 +182,7 @@ class StreamWalk {
         const S* row = hits_.rows[i].value;
         const Ray<S> ray{columns(row, Row::kOrigin), columns(row, Row::kDirection), row[Row::kTime]};
         const SpreadRay<Boxes> spread(ray, inverse_of_scale<S>(columns(row, Row::kScale)),
-                                      static_cast<std::int32_t>(row[Row::kLeaving]));
+                                      static_cast<std::int32_t>(bits_of<S>(row[Row::kLeaving])));
         Hit<S> hit{hits_.distance[i], hits_.primitive_id[i]};
         raypool::detail::walk<features, Boxes>(tree_, spread, hit, work_, child);
         hits_.set(i, hit.t, static_cast<std::int32_t>(hit.primitive_id));

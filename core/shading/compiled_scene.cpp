@@ -61,7 +61,6 @@ class Compiler {
         if (scene_.width * scene_.height > kMostPixels)
             throw InputError(
                 fmt::format("image of {} x {}: must have at most 2^32 pixels", scene_.width, scene_.height));
-        static_assert(kMostBoxes <= std::size_t{1} << 24U, "an id is whole in a float");
         static_assert(kMostBoxes <= std::size_t{1} << PlanarMark<Scalar>::kGroupBits, "a group is an id");
         const std::size_t count = scene_.spheres.size() + scene_.quads.size() + scene_.planes.size();
         if (count > kMostBoxes)

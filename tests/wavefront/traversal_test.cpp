@@ -169,7 +169,7 @@ void trace_stream(const CompiledScene<ScalarOf<Real>>& scene, const std::vector<
                 row.value[Row::kScale + k] = 1 / rays[at].ray.direction[k];
                 row.value[Row::kDirection + k] = rays[at].ray.direction[k];
             }
-            row.value[Row::kLeaving] = static_cast<ScalarOf<Real>>(rays[at].leaving_id);
+            row.value[Row::kLeaving] = of_bits<ScalarOf<Real>>(rays[at].leaving_id);
             row.value[Row::kTime] = rays[at].ray.time;
             row.value[Row::kDistance] = stream.distance()[at] = lane(hit.t, i);
             stream.primitive_id()[at] = static_cast<std::int32_t>(lane(hit.primitive_id, i));
