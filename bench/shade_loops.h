@@ -66,7 +66,7 @@ RAYPOOL_INLINE void shade_at(const CompiledScene<float>& scene, const RandomSeed
         scene, ray, load_at<Real>(columns.distance, i), load_at<Int<Real>>(columns.primitive_id, i),
         load_vec3_at<Real>(columns.throughput, i), key, load_at<U>(columns.step, i), seed);
     for (int k = 0; k < 3; ++k) {
-        store_at(columns.next_origin[k], i, out.origin[k]);
+        store_at(columns.next_origin[k], i, out.start.origin[k]);
         store_at(columns.next_direction[k], i, out.direction[k]);
         store_at(columns.next_throughput[k], i, out.throughput[k]);
     }

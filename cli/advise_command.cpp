@@ -12,12 +12,12 @@
 #include "cli/options.h"
 #include "cli/print.h"
 #include "cli/progress_bar.h"
-#include "core/runtime/environment.h"
 #include "core/base/error.h"
 #include "core/base/json_file.h"
 #include "core/base/output_file.h"
-#include "core/scene/scene_reader.h"
 #include "core/base/text.h"
+#include "core/runtime/environment.h"
+#include "core/scene/scene_reader.h"
 
 namespace raypool::cli {
 

@@ -44,7 +44,8 @@ Checkpoint load_checkpoint(const CheckpointOptions& options, const Checkpoint& w
     return sums;
 }
 
-CheckpointKeeper::CheckpointKeeper(const CheckpointOptions& options, cluster::Ranks& ranks) : options_(options), ranks_(ranks) {
+CheckpointKeeper::CheckpointKeeper(const CheckpointOptions& options, cluster::Ranks& ranks)
+    : options_(options), ranks_(ranks) {
     if (is_kept()) signals_.emplace();
 }
 

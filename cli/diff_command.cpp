@@ -15,11 +15,11 @@
 #include "cli/options.h"
 #include "cli/print.h"
 #include "core/base/error.h"
+#include "core/base/output_file.h"
 #include "core/image/image_diff.h"
 #include "core/image/image_file.h"
-#include "core/base/output_file.h"
-#include "core/runtime/settings_text.h"
 #include "core/image/tile_bias.h"
+#include "core/runtime/settings_text.h"
 
 namespace raypool::cli {
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -8,11 +9,11 @@
 
 #include "cli/commands.h"
 #include "cli/print.h"
-#include "core/shading/compiled_scene.h"
-#include "core/runtime/environment.h"
-#include "core/film/light_range.h"
 #include "core/base/memory.h"
+#include "core/film/light_range.h"
+#include "core/runtime/environment.h"
 #include "core/scene/scene_reader.h"
+#include "core/shading/compiled_scene.h"
 #include "wavefront/capacity.h"
 
 namespace raypool::cli {
@@ -20,7 +21,7 @@ namespace raypool::cli {
 namespace {
 
 template <class Block>
-std::size_t filled_lanes(const std::vector<Block>& blocks) {
+std::size_t filled_lanes(std::span<const Block> blocks) {
     std::size_t count = 0;
     for (const Block& block : blocks)
         for (const std::int32_t id : block.id) count += id != kNoPrimitive ? 1 : 0;

@@ -13,9 +13,9 @@
 #include "cli/print.h"
 #include "core/base/error.h"
 #include "core/base/file_lock.h"
-#include "core/image/image_file.h"
 #include "core/base/output_file.h"
 #include "core/film/checkpoint.h"
+#include "core/image/image_file.h"
 
 namespace raypool::cli {
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/engines.h"
 #include "core/base/error.h"
 
 namespace raypool::cli {
@@ -82,7 +83,7 @@ bool is_given(const CLI::App& command, std::string_view option, std::string_view
 std::string engine_in_effect(const CLI::App& render_command) {
     const CLI::Option& engine = *render_command.get_option("--engine");
     if (engine.count() > 0) return engine.results().front();
-    return render_command.get_option("--cost-image")->count() > 0 ? "recursive" : "wavefront";
+    return engines().preferred(render_command.get_option("--cost-image")->count() > 0).name;
 }
 
 void check_option_rules(const CLI::App& command) {

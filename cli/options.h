@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/runtime/settings_text.h"
 #include "core/film/checkpoint.h"
+#include "core/runtime/settings_text.h"
 
 namespace raypool::cli {
 

@@ -39,7 +39,8 @@ void add_pool_options(CLI::App& command, PoolOptions& options) {
     add("--intersect", options.intersection, defaults.intersection,
         "Ray by ray, as streams, or as streams of pairs of ray and sphere (default: pairs)");
     add("--camera", options.camera, defaults.camera,
-        "Camera rays enter the pool at once, or after their first bounce, traced by registers or by beams (default: beam)");
+        "Camera rays enter the pool at once, or after their first bounce, traced by registers or by beams (default: "
+        "beam)");
     add("--sort", options.sort, defaults.sort, "Order of records before they are shaded (default: none)");
     add("--append", options.append, defaults.append, "How survivors of a shared pool reach the next round");
     add("--accumulator", options.accumulator, defaults.accumulator,

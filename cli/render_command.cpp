@@ -11,6 +11,7 @@
 
 #include "cli/checkpoint_keeper.h"
 #include "cli/commands.h"
+#include "cli/engines.h"
 #include "cli/option_rules.h"
 #include "cli/options.h"
 #include "cli/pool_options.h"
@@ -20,16 +21,15 @@
 #include "cli/stats_json.h"
 #include "cli/stopwatch.h"
 #include "cluster/agreement.h"
-#include "core/image/cost_image.h"
-#include "core/runtime/environment.h"
 #include "core/base/error.h"
-#include "core/image/heat_map.h"
-#include "core/image/image_file.h"
 #include "core/base/json_file.h"
 #include "core/base/memory.h"
 #include "core/base/output_file.h"
-#include "core/scene/scene_reader.h"
+#include "core/image/cost_image.h"
+#include "core/image/image_file.h"
+#include "core/runtime/environment.h"
 #include "core/runtime/trace.h"
+#include "core/scene/scene_reader.h"
 #include "wavefront/setting_names.h"
 
 namespace raypool::cli {
@@ -82,7 +82,7 @@ RenderSettings render_settings(const RenderOptions& options) {
     settings.sampler = parse_sampler(options.sampler);
     settings.roulette = options.roulette;
     settings.threads = thread_count(options.threads);
-    if (options.engine != "wavefront" || options.pool.scope != to_string(wavefront::PoolScope::Shared))
+    if (!engines().find(options.engine).has_pool || options.pool.scope != to_string(wavefront::PoolScope::Shared))
         settings.schedule = chosen_schedule(options.schedule, options.grain);
     if (options.grain) settings.grain = parse_grain(*options.grain);
     settings.count_work = options.count_work || (!options.cost_image.empty() && cost_of(options.cost) == Cost::Tests);
@@ -122,12 +122,10 @@ ImageAttributes image_attributes(const RenderRecord& record) {
     return attributes;
 }
 
-/// The values, or, where the format has no room for them, a picture of them.
 void write_cost_image(const RenderOptions& options, const CostImage& cost, const RenderRecord& record) {
     ImageAttributes attributes = image_attributes(record);
     attributes["raypool.cost"] = options.cost;
-    const bool is_picture = image_format(options.cost_image) == ImageFormat::Png;
-    write_image(options.cost_image, is_picture ? heat_map(cost) : cost.image(), attributes);
+    write_image(options.cost_image, cost.image(), attributes);
 }
 
 /// What only one rank can do is for rank 0; what is not gathered from ranks is refused. Returns the checkpoint's lock.
@@ -153,7 +151,7 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
 /// are as the rank was given them.
 ImageKey shared_terms(const Scene& scene, const RenderRecord& record, const RenderOptions& options) {
     const nlohmann::json program = environment_json();
-    const bool is_exact = record.engine != "wavefront" || !adds_reals(record.pool.accumulator);
+    const bool is_exact = !engines().find(record.engine).has_pool || !adds_reals(record.pool.accumulator);
     const auto is_named = [](const std::string& file) { return file.empty() ? "none" : "a file"; };
     const auto is_on = [](bool flag) { return flag ? "on" : "off"; };
     ImageKey terms{{"command", "render"},
@@ -197,7 +195,9 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     }
     if (!options.stats.empty()) check_writable(options.stats);
     if (!options.cost_image.empty()) {
-        image_format(options.cost_image);
+        if (image_format(options.cost_image) == ImageFormat::Png)
+            throw InputError(fmt::format("--cost-image: {}: a PNG file has no room for values; name an .exr or a .pfm",
+                                         options.cost_image));
         check_writable(options.cost_image);
     }
     Trace trace;
@@ -213,7 +213,8 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;
     record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.precision), record.settings.threads);
-    if (!options.checkpoint.file.empty() && record.engine == "wavefront" && adds_reals(record.pool.accumulator))
+    if (!options.checkpoint.file.empty() && engines().find(record.engine).has_pool &&
+        adds_reals(record.pool.accumulator))
         throw InputError("--accumulator: atomic-float and atomic-double have no exact sums to keep in a --checkpoint");
     record.scene_name = scene.name;
     record.width = scene.width;
@@ -267,8 +268,9 @@ void add_render_command(CLI::App& app, cluster::Ranks& ranks, int& status) {
         ->check(check_file_name);
     command
         ->add_option("--engine", options->engine,
-                     "How paths are followed (default: wavefront, with --cost-image recursive)")
-        ->check(CLI::IsMember({"recursive", "iterative", "wavefront"}));
+                     fmt::format("How paths are followed (default: {}, with --cost-image {})",
+                                 engines().preferred(false).name, engines().preferred(true).name))
+        ->check(CLI::IsMember(engines().names()));
     command->add_option("--spp", options->spp, "Samples per pixel (default: 100)")
         ->check(CLI::Range(std::int64_t{1}, kMostSpp));
     command->add_option("--samples", options->samples, "Only samples A:B of them, counted from 0, without B");
@@ -282,7 +284,7 @@ void add_render_command(CLI::App& app, cluster::Ranks& ranks, int& status) {
         ->check(CLI::Range(std::int64_t{0}, std::int64_t{path_step::kMostBounces}));
     command
         ->add_option("--split-depth", options->split_depth,
-                     "At so many first hits on glass follow both the reflected and the refracted ray (default: 0)")
+                     "Follow both rays, reflected and refracted, at the first N hits on glass (default: 0)")
         ->check(CLI::Range(0, path_step::kMostSplits));
     command->add_option("--seed", options->seed, "Seed of all random numbers (default: 0)");
     command
@@ -315,7 +317,7 @@ void add_render_command(CLI::App& app, cluster::Ranks& ranks, int& status) {
         ->check(check_file_name);
     command
         ->add_option("--cost-image", options->cost_image,
-                     "Image file for what each pixel cost: values in .exr or .pfm, false colours in .png")
+                     "Image file (.exr or .pfm) for what each pixel cost; scripts/draw_costs draws it")
         ->check(check_file_name);
     command->add_option("--cost", options->cost, "What is cost there: segments, tests or ns (default: tests)")
         ->check(CLI::IsMember({"segments", "tests", "ns"}));

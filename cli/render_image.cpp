@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/engines.h"
 #include "cli/progress_bar.h"
 #include "cli/stopwatch.h"
 #include "cluster/exchange.h"
@@ -14,21 +15,13 @@
 #include "core/film/light_range.h"
 #include "core/runtime/progressive.h"
 #include "core/scene/scene_hash.h"
-#include "recursive/engine.h"
-#include "wavefront/engine.h"
 
 namespace raypool::cli {
 
 namespace {
 
-std::unique_ptr<Engine> make_own_engine(const std::string& name, const wavefront::PoolSettings& pool) {
-    if (name == "wavefront") return std::make_unique<wavefront::WavefrontEngine>(pool);
-    if (name == "iterative") return std::make_unique<recursive::IterativeEngine>();
-    return std::make_unique<recursive::RecursiveEngine>();
-}
-
 std::unique_ptr<Engine> make_engine(const RenderRecord& record, cluster::Ranks& ranks) {
-    std::unique_ptr<Engine> own = make_own_engine(record.engine, record.pool);
+    std::unique_ptr<Engine> own = engines().find(record.engine).make(record.pool);
     return ranks.count() == 1 ? std::move(own) : std::make_unique<cluster::RankEngine>(std::move(own), ranks);
 }
 
@@ -131,18 +124,18 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
 }  // namespace
 
 ImageKey image_key(const Scene& scene, const RenderRecord& record) {
-    const RenderSettings& settings = record.settings;
+    const auto& [depth, seed, sampler, split_depth, roulette] = static_cast<const ImageSettings&>(record.settings);
     // What differs first is named, so a width goes before the scene, whose hash covers the size, and a height behind
     // it.
     return {{"image_version", fmt::to_string(kImageVersion)},
             {"width", fmt::to_string(scene.width)},
             {"scene", scene_hash(scene)},
             {"height", fmt::to_string(scene.height)},
-            {"depth", fmt::to_string(settings.depth)},
-            {"split_depth", fmt::to_string(settings.split_depth)},
-            {"seed", fmt::to_string(settings.seed)},
-            {"sampler", settings.sampler == Sampler::Sobol ? "sobol" : "independent"},
-            {"roulette", settings.roulette ? "on" : "off"},
+            {"depth", fmt::to_string(depth)},
+            {"split_depth", fmt::to_string(split_depth)},
+            {"seed", fmt::to_string(seed)},
+            {"sampler", sampler == Sampler::Sobol ? "sobol" : "independent"},
+            {"roulette", roulette ? "on" : "off"},
             {"precision", record.precision == Precision::Float ? "float" : "double"},
             {"target_error", fmt::to_string(record.target_error)}};
 }

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/engines.h"
 #include "cli/pool_options.h"
 #include "core/runtime/environment.h"
 
@@ -12,7 +13,7 @@ namespace raypool::cli {
 using nlohmann::json;
 
 bool loops_over_image(const RenderRecord& record) {
-    return record.engine != "wavefront" || wavefront::loops_over_image(record.pool);
+    return !engines().find(record.engine).has_pool || wavefront::loops_over_image(record.pool);
 }
 
 bool misses_target(const RenderRecord& record) {
@@ -40,7 +41,7 @@ json settings_json(const RenderRecord& record) {
         if (has_grain(settings.schedule)) result["grain"] = to_string(settings.grain);
     }
     if (record.target_error > 0) result["target_error"] = record.target_error;
-    if (record.engine == "wavefront") result["pool"] = to_json(record.pool);
+    if (engines().find(record.engine).has_pool) result["pool"] = to_json(record.pool);
     return result;
 }
 
@@ -74,10 +75,8 @@ json stats_json(const RenderRecord& record) {
     json lists = json::array();
     for (const ListLevel& level : report.lists) {
         if (level.lists == 0) break;  // the tree goes no deeper
-        lists.push_back({{"lists", level.lists},
-                         {"rays", level.rays},
-                         {"single_rays", level.single_rays},
-                         {"lanes", level.lanes}});
+        lists.push_back(
+            {{"lists", level.lists}, {"rays", level.rays}, {"single_rays", level.single_rays}, {"lanes", level.lanes}});
     }
     json stats{
         {"hash", record.hash},
@@ -125,7 +124,7 @@ json stats_json(const RenderRecord& record) {
                                   {"segments", rank.segments()},
                                   {"busy_s", busy_s}});
     }
-    if (record.engine == "wavefront") {
+    if (engines().find(record.engine).has_pool) {
         stats["record_bytes"] = report.record_bytes;
         stats["pool_rays"] = report.pool_rays;
         stats["pool_bytes"] = report.pool_bytes;

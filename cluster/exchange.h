@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cluster/ranks.h"
-#include "core/runtime/engine.h"
 #include "core/film/checkpoint.h"
+#include "core/runtime/engine.h"
 
 namespace raypool::cluster {
 

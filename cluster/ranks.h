@@ -24,7 +24,7 @@ class Ranks {
     Ranks() = default;
     Ranks(const Ranks&) = delete;
     Ranks& operator=(const Ranks&) = delete;
-    /// Waits for the others: whoever comes here has no more to say.
+    /// Waits until every rank has called it; a rank sends nothing afterwards.
     virtual ~Ranks() = default;
 
     [[nodiscard]] int rank() const { return rank_; }

@@ -105,7 +105,8 @@ MpiRanks::MpiRanks() {
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
     MPI_Comm_size(machine, &on_this_machine_);
     MPI_Comm_free(&machine);
-    if (count_ > 1 && threads < MPI_THREAD_SERIALIZED) std::exit(MpiRanks::fail(2, "this MPI was built without threads"));
+    if (count_ > 1 && threads < MPI_THREAD_SERIALIZED)
+        std::exit(MpiRanks::fail(2, "this MPI was built without threads"));
 }
 
 int MpiRanks::fail(int status, const std::string& text) const {

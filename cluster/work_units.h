@@ -39,8 +39,8 @@ struct WorkUnit {
 /// the one after it, and at a quarter of the others' speed it shall be done with both before they have done all the
 /// rest.
 inline constexpr int kUnitsAShare = 6;
-/// But no less than this many paths, some five milliseconds of a thread: a unit costs a message, a start of all threads,
-/// and the filling and draining of the pools.
+/// But no less than this many paths, some five milliseconds of a thread: a unit costs a message, a start of all
+/// threads, and the filling and draining of the pools.
 inline constexpr std::int64_t kLeastUnitPaths = 1 << 14;
 
 /// Cuts up `samples` of `places`, every one of them into exactly one unit: many samples of parts of the image, which is

@@ -1,12 +1,14 @@
 /// The per-pixel engines: recursion as in the paper, and the same tracer as a loop.
 ///
-/// Threads take balanced items of the image (core/runtime/balanced_items.h), or pixels, lines or tiles under any schedule of
-/// OpenMP. A thread owns the whole pixels that it renders, so nothing is shared but the scene; only where there are few
-/// pixels for many threads are their samples shared out too. Follows He, Song and Zong, "Parallel Ray Tracing with
-/// OpenMP": the paper's basic version is lines with the default schedule, its better ones `static,1` and single pixels.
+/// Threads take balanced items of the image (core/runtime/balanced_items.h), or pixels, lines or tiles under any
+/// schedule of OpenMP. A thread owns the whole pixels that it renders, so nothing is shared but the scene; only where
+/// there are few pixels for many threads are their samples shared out too. Follows He, Song and Zong, "Parallel Ray
+/// Tracing with OpenMP": the paper's basic version is lines with the default schedule, its better ones `static,1` and
+/// single pixels.
 #pragma once
 
 #include "core/runtime/engine.h"
+#include "core/runtime/registry.h"
 
 namespace raypool::recursive {
 
@@ -28,5 +30,8 @@ class IterativeEngine : public Engine {
     [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<double>&, const RenderSettings&,
                                                        Framebuffer&) const override;
 };
+
+/// The two.
+void add_engines(EngineRegistry& registry);
 
 }  // namespace raypool::recursive

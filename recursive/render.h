@@ -12,9 +12,9 @@
 
 #include <fmt/format.h>
 
+#include "core/base/error.h"
 #include "core/runtime/balanced_items.h"
 #include "core/runtime/engine.h"
-#include "core/base/error.h"
 #include "core/runtime/loop.h"
 #include "core/runtime/team_loop.h"
 #include "recursive/item_log.h"
@@ -69,8 +69,8 @@ void check_stack(std::int32_t depth, int threads) {
                     depth, wanted, per_bounce, held == 0 ? 0 : held - 1, wanted * 1024, wanted));
 }
 
-/// A tracer of one thread that adds lines of pixels to the framebuffer: what the loop over the image knows of it, so that
-/// the loop is compiled once for each precision, and the tracer for each set of features.
+/// A tracer of one thread that adds lines of pixels to the framebuffer: what the loop over the image knows of it, so
+/// that the loop is compiled once for each precision, and the tracer for each set of features.
 class LineTracer {
   public:
     LineTracer() = default;
@@ -145,12 +145,13 @@ struct TracerMaker {
 
 template <Form form, Features features, class Scalar, class Work, Splitting splitting, Rules rules>
 TracerMaker<Scalar> tracer_maker() {
-    TracerMaker<Scalar> maker{[](const CompiledScene<Scalar>& scene, const RenderSettings& settings,
-                                 Framebuffer& framebuffer) -> std::unique_ptr<LineTracer> {
-                                  return std::make_unique<CompiledLineTracer<form, features, Scalar, Work, splitting, rules>>(
-                                      scene, settings, framebuffer);
-                              },
-                              nullptr};
+    TracerMaker<Scalar> maker{
+        [](const CompiledScene<Scalar>& scene, const RenderSettings& settings,
+           Framebuffer& framebuffer) -> std::unique_ptr<LineTracer> {
+            return std::make_unique<CompiledLineTracer<form, features, Scalar, Work, splitting, rules>>(scene, settings,
+                                                                                                        framebuffer);
+        },
+        nullptr};
     if constexpr (form == Form::Recursive) maker.check_stack = &check_stack<features, Scalar, Work, splitting, rules>;
     return maker;
 }
@@ -250,9 +251,9 @@ std::unique_ptr<RenderSession> begin(const CompiledScene<Scalar>& scene, const R
     if (settings.count_work || counts_for_image)
         return begin<form, kEverything, Scalar, TestCount>(scene, settings, framebuffer);
     return dispatch_features<kFirstCompiledFeatures<Scalar>>(scene.features, [&]<Features features>() {
-        return are_plain(settings)
-                   ? begin<form, features, Scalar, NoTestCount, Splitting::Off, Rules::Plain>(scene, settings, framebuffer)
-                   : begin<form, features, Scalar, NoTestCount>(scene, settings, framebuffer);
+        return are_plain(settings) ? begin<form, features, Scalar, NoTestCount, Splitting::Off, Rules::Plain>(
+                                         scene, settings, framebuffer)
+                                   : begin<form, features, Scalar, NoTestCount>(scene, settings, framebuffer);
     });
 }
 

@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/geometry/traverse.h"
 #include "core/runtime/engine.h"
 #include "core/shading/shade.h"
-#include "core/geometry/traverse.h"
 #include "recursive/stack.h"
 
 namespace raypool::recursive {
@@ -23,7 +23,7 @@ struct Path {
     Ray<Scalar> ray;
     Vec3<Scalar> throughput;
     PathKey<Scalar> key;
-    std::int32_t leaving_id;  ///< what the ray starts on: Scattered::leaving_id
+    std::int32_t leaving_id;  ///< what the ray starts on: RayStart::leaving_id
     std::uint32_t step;       ///< path_step: hits so far, and the branch
 };
 
@@ -34,7 +34,7 @@ enum class Next : std::uint8_t { End, OnePath, TwoPaths };
 /// feel, and the paper's tracer has not), or whatever the settings say.
 enum class Rules : bool { Plain, Any };
 
-constexpr bool are_plain(const RenderSettings& settings) {
+constexpr bool are_plain(const ImageSettings& settings) {
     return settings.sampler == Sampler::Independent && !settings.roulette;
 }
 
@@ -42,8 +42,7 @@ constexpr bool are_plain(const RenderSettings& settings) {
 template <Features features, class Scalar, class Work, Splitting splitting, Rules rules = Rules::Any>
 class Tracer {
   public:
-    /// Of the settings, it follows those of paths: depth, seed, sampler, split_depth, roulette.
-    Tracer(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const FixedPoint& fixed)
+    Tracer(const SceneView<Scalar>& scene, const ImageSettings& settings, const FixedPoint& fixed)
         : scene_(scene),
           seed_(random_seed(settings.seed, settings.sampler)),
           depth_(settings.depth),
@@ -56,8 +55,8 @@ class Tracer {
     const FixedRgb& sample(std::int64_t x, std::int64_t y, std::int64_t sample_id) {
         const PathKey<Scalar> key{static_cast<std::uint32_t>(y * scene_.width + x),
                                   static_cast<std::uint32_t>(sample_id)};
-        const Ray<Scalar> ray = camera_ray<features, Scalar>(scene_.camera, static_cast<Scalar>(x), static_cast<Scalar>(y),
-                                                          key.pixel, key.sample, seed());
+        const Ray<Scalar> ray = camera_ray<features, Scalar>(scene_.camera, static_cast<Scalar>(x),
+                                                             static_cast<Scalar>(y), key.pixel, key.sample, seed());
         sum_ = {};
         const Path<Scalar> path{ray, vec3<Scalar>(1, 1, 1), key, kNoPrimitive, 0};
         if constexpr (form == Form::Recursive) {
@@ -118,12 +117,12 @@ class Tracer {
         }
         const Scattered<Scalar> out =
             scatter<features, Scalar, splitting>(scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key,
-                                              path.step, seed(), split_depth_, rules == Rules::Any && roulette_);
+                                                 path.step, seed(), split_depth_, rules == Rules::Any && roulette_);
         if (out.is_emitter) return finish(out.throughput);
-        after.ray = {out.origin, out.direction, path.ray.time};
+        after.ray = {out.start.origin, out.direction, path.ray.time};
         after.throughput = out.throughput;
         after.key = path.key;
-        after.leaving_id = static_cast<std::int32_t>(out.leaving_id);
+        after.leaving_id = static_cast<std::int32_t>(out.start.leaving_id);
         after.step = path.step + 1;
         if constexpr (splitting == Splitting::On) {
             if (out.is_split) {
@@ -151,7 +150,7 @@ class Tracer {
         return Next::End;
     }
 
-    const CompiledScene<Scalar>& scene_;
+    const SceneView<Scalar>& scene_;
     RandomSeed seed_;
     std::int32_t depth_;
     int split_depth_;

@@ -1,4 +1,5 @@
-/// Accumulators: the ways in which contributions reach the framebuffer. To compare them is one of the project's experiments.
+/// Accumulators: the ways in which contributions reach the framebuffer. To compare them is one of the project's
+/// experiments.
 ///
 /// An accumulator is made once a session and adds for all threads. Those that keep sums of their own bring them into
 /// the framebuffer, and begin anew, by merge(), a block of pixels at a time: threads may merge different blocks at
@@ -95,8 +96,9 @@ class EightContributions {
         if constexpr (x86::kRoundsEight && sizeof(Scalar) == sizeof(float)) {
             if (i % 8 == 0)
                 are_converted_ = i + 8 <= contributions_.count() &&
-                                 converter_.convert_eight(
-                                     {contributions_.channel(0, i), contributions_.channel(1, i), contributions_.channel(2, i)}, fixed_);
+                                 converter_.convert_eight({contributions_.channel(0, i), contributions_.channel(1, i),
+                                                           contributions_.channel(2, i)},
+                                                          fixed_);
             if (are_converted_) return {fixed_[0][i % 8], fixed_[1][i % 8], fixed_[2][i % 8]};
         }
         return converter_.convert<Scalar>(contributions_.radiance(i));
@@ -207,8 +209,8 @@ class PrivateInt64 : public AccumulatorBase<Scalar> {
     void add(const Contributions<Scalar>& contributions, SampleConverter& converter, int thread) override {
         Part& part = parts_[static_cast<std::size_t>(thread)];
         std::int64_t* sums = part.sums.data();
-        add_integers<Addition::Plain>(Interleaved{sums, squares_.empty() ? nullptr : sums + sums_.size()}, contributions,
-                                      converter);
+        add_integers<Addition::Plain>(Interleaved{sums, squares_.empty() ? nullptr : sums + sums_.size()},
+                                      contributions, converter);
         for (std::size_t i = 0; i < contributions.count(); ++i) part.is_used[contributions.pixel(i) / kBlockPixels] = 1;
     }
     [[nodiscard]] std::size_t block_count() const override { return block_count_of(sums_.size() / 3); }

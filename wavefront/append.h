@@ -87,7 +87,7 @@ class SharedPool {
     /// Enqueues records [from, from + front) and `split` records of `overflow`. Returns where in the batch's range
     /// the next records may be put.
     virtual std::size_t enqueue(std::int64_t b, std::size_t from, std::size_t front, const Records& overflow,
-                             std::size_t split) = 0;
+                                std::size_t split) = 0;
     virtual void end_round(const std::function<void()>& wait) = 0;
 
   protected:
@@ -119,7 +119,7 @@ class InPlacePool : public SharedPool<features, Scalar> {
         return most - std::min(most, count(b));
     }
     std::size_t enqueue(std::int64_t b, std::size_t from, std::size_t front, const typename Base::Records& overflow,
-                     std::size_t split) override {
+                        std::size_t split) override {
         overflow.copy_to(this->records_, from + front, 0, split);
         const std::size_t end = from + front + split;
         counts_[static_cast<std::size_t>(b)] = end - this->first(b);
@@ -138,7 +138,8 @@ class InPlacePool : public SharedPool<features, Scalar> {
     std::vector<std::size_t> counts_;
 };
 
-/// What the two strategies share that move survivors: the records of a round are dense, and free slots are shared out evenly.
+/// What the two strategies share that move survivors: the records of a round are dense, and free slots are shared out
+/// evenly.
 template <Features features, class Scalar>
 class DensePool : public SharedPool<features, Scalar> {
   public:
@@ -163,7 +164,7 @@ class AtomicPool : public DensePool<features, Scalar> {
         : Base(capacity, batch, split_depth), next_records_(this->allocated()) {}
 
     std::size_t enqueue(std::int64_t b, std::size_t from, std::size_t front, const typename Base::Records& overflow,
-                     std::size_t split) override {
+                        std::size_t split) override {
         const std::size_t target = next_.fetch_add(front + split, std::memory_order_relaxed);
         this->records_.copy_to(next_records_, target, from, front);
         overflow.copy_to(next_records_, target + front, 0, split);
@@ -193,7 +194,7 @@ class PrefixSumPool : public DensePool<features, Scalar> {
         for (Buffer& buffer : buffers_) buffer.records = std::make_unique<typename Base::Records>(this->allocated());
     }
     std::size_t enqueue(std::int64_t b, std::size_t from, std::size_t front, const typename Base::Records& overflow,
-                     std::size_t split) override {
+                        std::size_t split) override {
         Buffer& buffer = buffers_[static_cast<std::size_t>(omp_get_thread_num())];
         this->records_.copy_to(*buffer.records, buffer.count, from, front);
         overflow.copy_to(*buffer.records, buffer.count + front, 0, split);
@@ -239,7 +240,7 @@ std::size_t shared_pool_bytes(Append append, const PoolShape& shape, int threads
 
 template <Features features, class Scalar>
 std::unique_ptr<SharedPool<features, Scalar>> make_shared_pool(Append append, std::size_t capacity, std::size_t batch,
-                                                            int split_depth, int threads) {
+                                                               int split_depth, int threads) {
     switch (append) {
         case Append::InPlace:
             return std::make_unique<InPlacePool<features, Scalar>>(capacity, batch, split_depth);

@@ -1,8 +1,8 @@
 /// A beam: some packets of camera rays as one interval, against a register of boxes or shapes at a time.
 ///
-/// Rays through neighbouring film points differ little. An interval of origins and one of inverse directions hold all of
-/// them, and what the interval misses every ray misses: so sixty-four rays cost one box test. After Reshetov, Soupikov
-/// and Hurley, "Multi-Level Ray Tracing Algorithm", SIGGRAPH 2005, with a tree in place of their entry points.
+/// Rays through neighbouring film points differ little. An interval of origins and one of inverse directions hold all
+/// of them, and what the interval misses every ray misses: so sixty-four rays cost one box test. After Reshetov,
+/// Soupikov and Hurley, "Multi-Level Ray Tracing Algorithm", SIGGRAPH 2005, with a tree in place of their entry points.
 #pragma once
 
 #include <bit>
@@ -45,8 +45,8 @@ class Beam {
             const S far_low = far.least();
             const S far_high = far.greatest();
             sign_[i] = near_low < 0 ? 1 : 0;
-            is_coherent_ = is_coherent_ && (near_low > 0 || near_high < 0) && far_low > -kInfinity<S> &&
-                           far_high < kInfinity<S>;
+            is_coherent_ =
+                is_coherent_ && (near_low > 0 || near_high < 0) && far_low > -kInfinity<S> && far_high < kInfinity<S>;
             reach_ += max(abs(origin_low), abs(origin_high));
             near_origin_[i] = Boxes(sign_[i] == 0 ? origin_high : origin_low);
             far_origin_[i] = Boxes(sign_[i] == 0 ? origin_low : origin_high);
@@ -206,15 +206,14 @@ RAYPOOL_INLINE void walk_beam(const Tree& tree, const Beam<Wide<ScalarOf<Real>, 
 /// The closest hits of packets of camera rays, which start on nothing. Every lane holds a ray, `count` of them are
 /// wanted; rays that no beam holds go packet by packet.
 template <Features features, Simd Real, class Work>
-RAYPOOL_INLINE void closest_hits(const CompiledScene<ScalarOf<Real>>& scene, const WideRays<Real>* rays,
-                                 Hit<Real>* hit, int packets, int count, Work& work) {
+RAYPOOL_INLINE void closest_hits(const ShapeView<ScalarOf<Real>>& scene, const WideRays<Real>* rays, Hit<Real>* hit,
+                                 int packets, int count, Work& work) {
     using S = ScalarOf<Real>;
     const detail::Beam<Wide<S, kTreeWidth<S>>> beam(rays, packets);
     if (!beam.is_coherent()) {
         for (int p = 0; p < packets; ++p)
-            hit[p] = closest_hits<features, Real>(scene, rays[p],
-                                               lanes_before<Real>(static_cast<std::size_t>(count - p * kLanes<Real>)),
-                                               work);
+            hit[p] = closest_hits<features, Real>(
+                scene, rays[p], lanes_before<Real>(static_cast<std::size_t>(count - p * kLanes<Real>)), work);
         return;
     }
     for (const auto& block : scene.large_spheres) {
@@ -226,7 +225,8 @@ RAYPOOL_INLINE void closest_hits(const CompiledScene<ScalarOf<Real>>& scene, con
     }
     if constexpr (features.planar) {
         for (int p = 0; p < packets; ++p)
-            intersect_all<features>(scene.planes, rays[p], std::min(count - p * kLanes<Real>, kLanes<Real>), hit[p], work);
+            intersect_all<features>(scene.planes, rays[p], std::min(count - p * kLanes<Real>, kLanes<Real>), hit[p],
+                                    work);
         detail::walk_beam<features, Real>(scene.quad_tree, beam, rays, hit, packets, count, work);
     }
     detail::walk_beam<features, Real>(scene.sphere_tree, beam, rays, hit, packets, count, work);

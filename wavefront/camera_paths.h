@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <span>
 
-#include "core/runtime/loop.h"
 #include "core/math/path.h"
+#include "core/runtime/loop.h"
 
 namespace raypool::wavefront {
 

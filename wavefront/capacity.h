@@ -9,15 +9,15 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/shading/compiled_scene.h"
 #include "core/base/memory.h"
+#include "core/shading/compiled_scene.h"
 #include "wavefront/settings.h"
 
 namespace raypool::wavefront {
 
 /// Of nodes, their motion and leaves.
 template <class Scalar>
-std::size_t tree_bytes(const CompiledScene<Scalar>& scene) {
+std::size_t tree_bytes(const SceneView<Scalar>& scene) {
     const auto bytes = [](const auto& tree) {
         std::size_t all = tree.nodes.size() * sizeof(tree.nodes[0]) + tree.blocks.size() * sizeof(tree.blocks[0]);
         for (const auto& along_axis : tree.motion) all += along_axis.size() * sizeof(along_axis[0]);
@@ -36,7 +36,7 @@ constexpr std::int64_t thread_capacity(std::size_t tree_bytes, std::size_t cache
 
 /// Records of each pool in a render of the scene: what the settings say, or as many as suit the trees and this machine.
 template <class Scalar>
-std::int64_t pool_capacity(const PoolSettings& pool, const CompiledScene<Scalar>& scene) {
+std::int64_t pool_capacity(const PoolSettings& pool, const SceneView<Scalar>& scene) {
     if (pool.capacity != PoolSettings::kAutomatic) return pool.capacity;
     if (pool.scope == PoolScope::Shared) return PoolSettings::kSharedCapacity;
     return thread_capacity(tree_bytes(scene), second_level_cache());

@@ -75,4 +75,15 @@ std::unique_ptr<RenderSession> WavefrontEngine::begin(const CompiledScene<double
 }
 #endif
 
+void add_engines(EngineRegistry& registry) {
+    registry.add({.name = "wavefront",
+                  .description = "rounds over pools of ray records",
+                  .keeps_costs = false,
+                  .has_pool = true,
+                  .make = [](const std::any& options) {
+                      const auto* pool = std::any_cast<PoolSettings>(&options);
+                      return std::make_unique<WavefrontEngine>(pool == nullptr ? PoolSettings{} : *pool);
+                  }});
+}
+
 }  // namespace raypool::wavefront

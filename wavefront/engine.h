@@ -6,6 +6,7 @@
 #pragma once
 
 #include "core/runtime/engine.h"
+#include "core/runtime/registry.h"
 #include "wavefront/settings.h"
 
 namespace raypool::wavefront {
@@ -24,5 +25,8 @@ class WavefrontEngine : public Engine {
   private:
     PoolSettings pool_;
 };
+
+/// Its options are PoolSettings.
+void add_engines(EngineRegistry& registry);
 
 }  // namespace raypool::wavefront

@@ -39,7 +39,7 @@ inline std::vector<Rung> ladder(int threads) {
     pool.capacity = PoolSettings::kSharedCapacity / threads;
     add("thread", "a pool for each thread, which then owns its pixels");
     pool.capacity = PoolSettings::kThreadCapacity;
-    add("thread-small", "a pool that fits into the cache");
+    add("thread-small", "a smaller pool, of 8192 records");
     pool.refill = Refill::Regenerate;
     add("regenerate", "camera rays enter as soon as there is room");
     pool.camera = CameraStage::Fused;

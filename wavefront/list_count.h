@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "core/runtime/engine.h"
 #include "core/geometry/traverse.h"
+#include "core/runtime/engine.h"
 
 namespace raypool::wavefront {
 

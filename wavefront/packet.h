@@ -52,7 +52,7 @@ RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, co
 
 /// The closest hits of a packet. Lanes that are not active get some hit or none.
 template <Features features, class Real, class Work>
-RAYPOOL_INLINE Hit<Real> closest_hits(const CompiledScene<ScalarOf<Real>>& scene, const WideRays<Real>& rays,
+RAYPOOL_INLINE Hit<Real> closest_hits(const ShapeView<ScalarOf<Real>>& scene, const WideRays<Real>& rays,
                                       const Mask<Real>& is_active, Work& work) {
     Hit<Real> hit;
     const int count = std::popcount(mask_bits(is_active));

@@ -10,9 +10,9 @@
 #include <memory>
 #include <new>
 
-#include "core/scene/features.h"
 #include "core/math/path.h"
 #include "core/math/vec.h"
+#include "core/scene/features.h"
 
 namespace raypool::wavefront {
 
@@ -22,7 +22,7 @@ struct RayRecord {
     Ray<Real> ray;
     Vec3<Real> throughput;
     PathKey<Real> key;
-    Uint32<Real> leaving_id;  ///< what the ray starts on (Scattered::leaving_id); kNoPrimitive as an unsigned number
+    Uint32<Real> leaving_id;  ///< what the ray starts on (RayStart::leaving_id); kNoPrimitive as an unsigned number
     Uint32<Real> step;        ///< path_step: hits so far, and the branch
 };
 

@@ -26,7 +26,7 @@ class AccumulatorBase;
 /// What all threads of a render share.
 template <class Scalar>
 struct RenderContext {
-    const CompiledScene<Scalar>& scene;
+    const SceneView<Scalar>& scene;
     const RenderSettings& settings;
     const PoolSettings& pool;
     RandomSeed seed;
@@ -68,8 +68,8 @@ class RecordStages {
         return std::exchange(overflow_count_, 0);
     }
 
-    /// Enqueues records [first, first + count) of batch b and the overflow in a shared pool. Returns where in the batch's
-    /// range the next records may be put.
+    /// Enqueues records [first, first + count) of batch b and the overflow in a shared pool. Returns where in the
+    /// batch's range the next records may be put.
     template <class Pool>
     std::size_t enqueue(Pool& pool, std::int64_t b, std::size_t first, std::size_t count) {
         log_.start();
@@ -115,7 +115,7 @@ template <Features features, class Scalar>
 struct StagesMaker {
     /// For batches of at most `most_records`.
     std::unique_ptr<RecordStages<features, Scalar>> (*make)(const RenderContext<Scalar>&, std::size_t most_records,
-                                                         int thread);
+                                                            int thread);
     /// The memory of one of these.
     std::size_t (*bytes)(const RenderContext<Scalar>&, std::size_t most_records);
 };

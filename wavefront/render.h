@@ -4,8 +4,8 @@
 /// each of the large ones: they take most of the time that the project takes to build.
 #pragma once
 
-#include "core/shading/shade.h"
 #include "core/geometry/traverse.h"
+#include "core/shading/shade.h"
 #include "wavefront/engine.h"
 #include "wavefront/list_count.h"
 #include "wavefront/record_stages.h"
@@ -29,7 +29,7 @@ template <Features features, class Real, class Work, Splitting splitting>
 std::unique_ptr<RenderSession> begin(const CompiledScene<ScalarOf<Real>>& scene, const RenderSettings& settings,
                                      const PoolSettings& pool, Framebuffer& framebuffer) {
     return begin_session<record_features(features), ScalarOf<Real>>(scene, settings, pool, framebuffer,
-                                                              stages_maker<features, Real, Work, splitting>());
+                                                                    stages_maker<features, Real, Work, splitting>());
 }
 
 /// Picks the code compiled for what the scene needs. One code counts and splits, for all needs.

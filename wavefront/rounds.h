@@ -155,14 +155,16 @@ class ThreadPoolSession : public PoolSession<Scalar> {
     [[nodiscard]] const std::vector<RoundReport>& rounds(std::size_t thread) const override {
         return pools_[thread]->stages().log().rounds();
     }
-    [[nodiscard]] std::span<const ListLevel> lists(std::size_t thread) const override { return pools_[thread]->stages().lists(); }
+    [[nodiscard]] std::span<const ListLevel> lists(std::size_t thread) const override {
+        return pools_[thread]->stages().lists();
+    }
 
     std::vector<std::unique_ptr<Pool>> pools_;  ///< by thread
 };
 
 /// The paper's pool: one for all threads, and a barrier after every round. Where camera paths enter as soon as there is
-/// free_slots, the last of them leave a pool that only thins out: batches whose records stay in them are then finished, each
-/// by one thread, in place of dozens of rounds with nothing in them but barriers.
+/// free_slots, the last of them leave a pool that only thins out: batches whose records stay in them are then finished,
+/// each by one thread, in place of dozens of rounds with nothing in them but barriers.
 template <Features features, class Scalar>
 class SharedPoolSession : public PoolSession<Scalar> {
     using Base = PoolSession<Scalar>;
@@ -180,7 +182,7 @@ class SharedPoolSession : public PoolSession<Scalar> {
                               threads * maker.bytes(this->context(), shape.stride),
                           shape.stride);
         pool_ = make_shared_pool<features, Scalar>(pool.append, this->capacity(), batch, settings.split_depth,
-                                                settings.threads);
+                                                   settings.threads);
         stages_.resize(threads);
         this->finish_setup([&](int thread) {
             stages_[static_cast<std::size_t>(thread)] = maker.make(this->context(), pool_->batch(), thread);
@@ -256,7 +258,9 @@ class SharedPoolSession : public PoolSession<Scalar> {
     [[nodiscard]] const std::vector<RoundReport>& rounds(std::size_t thread) const override {
         return stages_[thread]->log().rounds();
     }
-    [[nodiscard]] std::span<const ListLevel> lists(std::size_t thread) const override { return stages_[thread]->lists(); }
+    [[nodiscard]] std::span<const ListLevel> lists(std::size_t thread) const override {
+        return stages_[thread]->lists();
+    }
 
     std::unique_ptr<SharedPool<features, Scalar>> pool_;
     std::vector<std::unique_ptr<ThreadStages>> stages_;  ///< by thread

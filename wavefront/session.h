@@ -12,10 +12,10 @@
 
 #include <fmt/format.h>
 
-#include "core/runtime/engine.h"
 #include "core/base/error.h"
-#include "core/runtime/loop.h"
 #include "core/base/memory.h"
+#include "core/runtime/engine.h"
+#include "core/runtime/loop.h"
 #include "wavefront/accumulator.h"
 #include "wavefront/capacity.h"
 #include "wavefront/record_stages.h"
@@ -52,8 +52,8 @@ class PoolSession : public RenderSession {
         return std::max<std::size_t>(static_cast<std::size_t>(pool_.capacity), std::size_t{1} << settings_.split_depth);
     }
 
-    /// Refuses `pool_bytes` for pools and stages, and what the accumulator takes, where there is not as much; where there
-    /// is, makes the accumulator. Refuses streams of so many rays that pairs of them with shapes have no numbers.
+    /// Refuses `pool_bytes` for pools and stages, and what the accumulator takes, where there is not as much; where
+    /// there is, makes the accumulator. Refuses streams of so many rays that pairs of them with shapes have no numbers.
     void take_memory(std::size_t pool_bytes, std::size_t stream_rays) {
         report_.pool_bytes = pool_bytes + accumulator_bytes(pool_.accumulator, framebuffer_, settings_.threads);
         check_available(report_.pool_bytes,

@@ -29,7 +29,8 @@ enum class CameraStage : std::uint8_t { Staged, Fused, Beam };
 enum class Sort : std::uint8_t { None, Material };
 
 /// How survivors of a shared pool reach the next round: they stay in the batch they were in; they are moved to places
-/// taken from one atomic counter; or to places found by a prefix sum over the batches.
+/// taken from one atomic counter; or they are collected by each
+/// thread, and moved to places found by a prefix sum over the threads.
 enum class Append : std::uint8_t { InPlace, Atomic, PrefixSum };
 
 /// How radiance reaches the framebuffer. The planar ones add to three planes in place of one interleaved framebuffer;
@@ -64,13 +65,15 @@ struct PoolSettings {
     Append append = Append::InPlace;
     Accumulator accumulator = Accumulator::OwnedInt64;
     std::int64_t capacity = kAutomatic;  ///< records, of each pool; >= 1, or as capacity.h has it
-    std::int64_t batch = 4096;     ///< records that a thread takes at a time from a shared pool
+    std::int64_t batch = 4096;           ///< records that a thread takes at a time from a shared pool
     /// How the batches of a shared pool are handed out. They are few, so that a schedule meant for lines would fit ill.
     LoopSchedule batch_schedule{LoopSchedule::Kind::Dynamic, 0};
 
     static constexpr std::int64_t kAutomatic = 0;
-    static constexpr std::int64_t kThreadCapacity = 8192;   ///< fits into the second-level cache, with the stages' memory
-    static constexpr std::int64_t kSharedCapacity = 65536;  ///< better for a shared pool, whose rounds end in barriers
+    /// Of a thread's pool where the trees are small: larger pools were slower (docs/pool.md).
+    static constexpr std::int64_t kThreadCapacity = 8192;
+    /// Of a shared pool, whose rounds end in barriers.
+    static constexpr std::int64_t kSharedCapacity = 65536;
 };
 
 /// Records of a shared pool for so many threads: a thread's part of a round must take much longer than a barrier.

@@ -1,9 +1,10 @@
 /// Pairs of a ray and a sphere that may meet: what a cheap test lets through, so that registers are full of pairs where
 /// the exact test runs.
 ///
-/// Of the rays that reach a leaf one in thirty hits a given sphere of it. Tested sphere by sphere, an exact test runs for
-/// a whole register as soon as one of its rays comes near. Here may_meet_sphere() (core/geometry/shapes.h) looks at every ray and
-/// sphere first, and the pairs that pass are collected, whatever their sphere, and tested a register at a time.
+/// Of the rays that reach a leaf one in thirty hits a given sphere of it. Tested sphere by sphere, an exact test runs
+/// for a whole register as soon as one of its rays comes near. Here may_meet_sphere() (core/geometry/shapes.h) looks at
+/// every ray and sphere first, and the pairs that pass are collected, whatever their sphere, and tested a register at a
+/// time.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +45,8 @@ class SpherePairs {
         const Uint32<Real> first_pair = offset * Uint32<Real>(kShapes);
         for (int i = 0; i < count_; ++i) {
             const Vec3<Real> center = lane_of<Real>(block_.center, i);
-            Vec3<Real> toward = vec3<Real>(center[0] - ray.origin[0], center[1] - ray.origin[1], center[2] - ray.origin[2]);
+            Vec3<Real> toward =
+                vec3<Real>(center[0] - ray.origin[0], center[1] - ray.origin[1], center[2] - ray.origin[2]);
             if constexpr (features.motion)
                 toward = toward_sphere<Real>(center, lane_of<Real>(block_.motion, i), ray.time, ray.origin);
             const SphereReach<Real> reach{Real(square_[i]), Real(least_[i])};
@@ -68,7 +70,7 @@ class SpherePairs {
                                 row[Row::kTime - Row::kOrigin]};
             const unsigned valid = first + kRays <= count ? (1U << kRays) - 1 : (1U << (count - first)) - 1;
             find<features, Real>(ray, bits_of<Real>(row[Row::kLeaving - Row::kOrigin]),
-                              Uint32<Real>(list + first, stdx::element_aligned), valid, work);
+                                 Uint32<Real>(list + first, stdx::element_aligned), valid, work);
         }
     }
 
@@ -102,8 +104,8 @@ class SpherePairs {
                 const Real r = pick<kShapes, Real>(block_.padded_radius, which);
                 const Vec3<Real> low = vec3<Real>(center[0] - r, center[1] - r, center[2] - r);
                 const Vec3<Real> high = vec3<Real>(center[0] + r, center[1] + r, center[2] + r);
-                is_closer = is_closer &&
-                            is_inside_box<Real>(low, high, origin, inverse_of_scale<Real>(columns(row, Row::kScale)), t);
+                is_closer = is_closer && is_inside_box<Real>(low, high, origin,
+                                                             inverse_of_scale<Real>(columns(row, Row::kScale)), t);
             }
             for (unsigned bits = mask_bits(is_closer); bits != 0; bits &= bits - 1) {
                 const int i = std::countr_zero(bits);

@@ -13,8 +13,8 @@
 #include "core/shading/shade.h"
 #include "wavefront/accumulator.h"
 #include "wavefront/beam.h"
+#include "wavefront/intersect_stage.h"
 #include "wavefront/record_stages.h"
-#include "wavefront/stream.h"
 
 namespace raypool::wavefront {
 
@@ -36,7 +36,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         : Base(context, most_overflow(context, most_records), thread),
           context_(context),
           thread_(thread),
-          stream_(most_records, tree_depth(context)),
+          intersect_(context.scene, context.pool.intersection, most_records),
           sort_scratch_(context.pool.sort == Sort::None ? 0 : most_records),
           converter_(context.fixed) {
         contributions_.reserve(std::max(most_records, kMostContributions) + kBeamRays + kRays);
@@ -44,7 +44,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
 
     /// The memory of one of these.
     static std::size_t bytes(const RenderContext<Scalar>& context, std::size_t most_records) {
-        return RayStream<Scalar>::bytes(most_records, tree_depth(context)) +
+        return IntersectStage<features, Real, Work>::bytes(context.scene, most_records) +
                Records::bytes(most_overflow(context, most_records)) +
                (context.pool.sort == Sort::None ? 0 : most_records * sizeof(double)) +
                Contributions<Scalar>::bytes(std::max(most_records, kMostContributions) + kBeamRays + kRays);
@@ -53,7 +53,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
     void begin() override {
         log_.begin();
         converter_ = SampleConverter(context_.fixed);
-        work_ = {};
+        intersect_.work() = {};
         paths_ = segments_ = 0;
         waited_s_ = 0;
     }
@@ -103,18 +103,14 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
 
     /// Finds the closest hits of records [first, first + count), which then lie in stream().
     void intersect(const Records& records, std::size_t first, std::size_t count) {
-        if (context_.pool.intersection == Intersection::Single) {
-            intersect_single(records, first, count);
-        } else {
-            intersect_stream(records, first, count);
-        }
+        intersect_.run(records, first, count);
     }
 
     /// A counting sort by material kind (misses last) of records and hits. The settings must ask for it.
     void sort_by_material(Records& records, std::size_t first, std::size_t count) {
         constexpr std::size_t kKinds = 5;
         const auto kind = [&](std::size_t i) -> std::size_t {
-            const std::int32_t id = stream_.primitive_id()[i];
+            const std::int32_t id = stream().primitive_id()[i];
             if (id < 0) return kKinds - 1;
             const auto& row = context_.scene.surfaces[static_cast<std::size_t>(id)];
             const Int<Scalar> code = bits_of<Scalar>(row.value[SurfaceRow<Scalar>::kCode]);
@@ -123,12 +119,12 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         std::size_t place[kKinds + 1] = {};
         for (std::size_t i = 0; i < count; ++i) ++place[kind(i) + 1];
         for (std::size_t k = 1; k <= kKinds; ++k) place[k] += place[k - 1];
-        std::uint32_t* order = stream_.lists();
+        std::uint32_t* order = stream().lists();
         for (std::size_t i = 0; i < count; ++i) order[place[kind(i)]++] = static_cast<std::uint32_t>(i);
         auto* scratch = reinterpret_cast<std::byte*>(sort_scratch_.data());
         records.permute(first, count, order, scratch);
-        permute(stream_.distance(), order, count, scratch);
-        permute(stream_.primitive_id(), order, count, scratch);
+        permute(stream().distance(), order, count, scratch);
+        permute(stream().primitive_id(), order, count, scratch);
     }
 
     /// Collects what ended as contributions and moves the survivors to the front. Returns how many they are.
@@ -137,7 +133,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         for (std::size_t i = 0; i < count; i += kRays) {
             const unsigned active = count - i >= kRays ? (1U << kRays) - 1 : (1U << (count - i)) - 1;
             survivors += shade(records, first + survivors, first + count, records.template load<Real>(first + i),
-                               load_hit(i), active);
+                               intersect_.hit(i), active);
         }
         return survivors;
     }
@@ -148,38 +144,36 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         contributions_.clear();
     }
 
-    RayStream<Scalar>& stream() { return stream_; }
+    RayStream<Scalar>& stream() { return intersect_.stream(); }
     [[nodiscard]] std::size_t contribution_count() const { return contributions_.count(); }
 
     void report(ThreadReport& work, SampleStatistics& statistics) const override {
         work.paths = paths_;
         work.segments = segments_;
-        work.box_tests = work_.box_tests;
-        work.primitive_tests = work_.primitive_tests;
+        work.box_tests = intersect_.work().box_tests;
+        work.primitive_tests = intersect_.work().primitive_tests;
         work.wait_s = waited_s_;
         statistics = converter_.statistics();
     }
     [[nodiscard]] std::span<const ListLevel> lists() const override {
-        if constexpr (requires { work_.lists; })
-            return work_.lists;
+        if constexpr (requires(Work work) { work.lists; })
+            return intersect_.work().lists;
         else
             return {};
     }
 
   private:
-    static constexpr std::size_t kMostContributions = 1024;  ///< kept back in the fused camera stage; fits into the L1 cache
+    /// Kept back in the fused camera stage; they fit into the first-level cache.
+    static constexpr std::size_t kMostContributions = 1024;
 
     static std::size_t most_overflow(const RenderContext<Scalar>& context, std::size_t most_records) {
         return context.settings.split_depth > 0 ? most_records : 0;
     }
-    static int tree_depth(const RenderContext<Scalar>& context) {
-        return std::max(context.scene.sphere_tree.depth, context.scene.quad_tree.depth);
-    }
 
     RAYPOOL_INLINE RayRecord<Real> camera_record(const CameraLanes<Real>& lanes) const {
         RayRecord<Real> record;
-        record.ray =
-            camera_ray<features, Real>(context_.scene.camera, lanes.x, lanes.y, lanes.pixel, lanes.sample, context_.seed);
+        record.ray = camera_ray<features, Real>(context_.scene.camera, lanes.x, lanes.y, lanes.pixel, lanes.sample,
+                                                context_.seed);
         record.throughput = vec3<Real>(Real(1), Real(1), Real(1));
         record.key = {lanes.pixel, lanes.sample};
         record.leaving_id = Uint32<Real>(static_cast<std::uint32_t>(kNoPrimitive));
@@ -206,13 +200,13 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         }
         if constexpr (Simd<Real>) {
             if (most > 1) {
-                closest_hits<features, Real>(context_.scene, rays, hit, packets, count, work_);
+                closest_hits<features, Real>(context_.scene, rays, hit, packets, count, intersect_.work());
             } else {
-                hit[0] = closest_hits<features, Real>(context_.scene, rays[0],
-                                                   lanes_before<Real>(static_cast<std::size_t>(count)), work_);
+                hit[0] = closest_hits<features, Real>(
+                    context_.scene, rays[0], lanes_before<Real>(static_cast<std::size_t>(count)), intersect_.work());
             }
         } else {
-            hit[0] = closest_hits<features, Real>(context_.scene, rays[0], true, work_);
+            hit[0] = closest_hits<features, Real>(context_.scene, rays[0], true, intersect_.work());
         }
         segments_ += count;
         std::size_t written = 0;
@@ -246,8 +240,8 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
                                       Real(static_cast<Scalar>(context_.settings.depth));
         const unsigned alive = mask_bits(out.is_alive && !is_deepest) & hits;
         RayRecord<Real> next = record;
-        next.ray.origin = out.origin;
-        next.leaving_id = id_bits(out.leaving_id);
+        next.ray.origin = out.start.origin;
+        next.leaving_id = id_bits(out.start.leaving_id);
         next.step = step;
         if constexpr (splitting == Splitting::On) {
             const Uint32<Real> reflected = path_step::reflected_branch<Uint32<Real>>(step);
@@ -285,78 +279,6 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         }
     }
 
-    RAYPOOL_INLINE Hit<Real> load_hit(std::size_t i) {
-        if constexpr (Simd<Real>) {
-            using Ids = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
-            const Ids ids(stream_.primitive_id() + i, stdx::element_aligned);
-            return {Real(stream_.distance() + i, stdx::element_aligned), stdx::static_simd_cast<Int<Real>>(ids)};
-        } else {
-            return {stream_.distance()[i], stream_.primitive_id()[i]};
-        }
-    }
-
-    void intersect_single(const Records& records, std::size_t first, std::size_t count) {
-        for (std::size_t i = 0; i < count; ++i) {
-            const RayRecord<Scalar> record = records.template load<Scalar>(first + i);
-            const Hit<Scalar> hit =
-                closest_hit<features>(context_.scene, record.ray, static_cast<std::int32_t>(record.leaving_id), work_);
-            stream_.distance()[i] = hit.t;
-            stream_.primitive_id()[i] = static_cast<std::int32_t>(hit.primitive_id);
-        }
-    }
-
-    void intersect_stream(const Records& records, std::size_t first, std::size_t count) {
-        if constexpr (!Simd<Real>) {
-            intersect_single(records, first, count);  // a stream of one lane is a single ray
-        } else {
-            const bool has_pairs = context_.pool.intersection == Intersection::Pairs;
-            for (std::size_t i = 0; i < count; i += kRays) {
-                const RayRecord<Real> record = records.template load<Real>(first + i);
-                const WideRays<Real> rays = wide_rays<Real>(record.ray, record.leaving_id);
-                const auto lanes = static_cast<int>(std::min<std::size_t>(kRays, count - i));
-                Hit<Real> hit;
-                if constexpr (features.planar) intersect_all<features>(context_.scene.planes, rays, lanes, hit, work_);
-                if (!has_pairs) intersect_all<features>(context_.scene.large_spheres, rays, lanes, hit, work_);
-                store_row(i, rays, hit);
-            }
-            if (has_pairs) {
-                for (const auto& block : context_.scene.large_spheres) pair_with_all(block, records, first, count);
-            }
-            if constexpr (features.planar)
-                detail::walk_stream<features, Real>(context_.scene.quad_tree, stream_, count, context_.pool.intersection,
-                                                 work_);
-            detail::walk_stream<features, Real>(context_.scene.sphere_tree, stream_, count, context_.pool.intersection,
-                                             work_);
-        }
-    }
-
-    /// Spheres that every ray tests.
-    void pair_with_all(const auto& block, const Records& records, std::size_t first, std::size_t count)
-    requires Simd<Real> {
-        SpherePairs<Scalar> pairs(block, stream_.lists());
-        for (std::size_t i = 0; i < count; i += kRays) {
-            const RayRecord<Real> record = records.template load<Real>(first + i);
-            const unsigned valid = count - i >= kRays ? (1U << kRays) - 1 : (1U << (count - i)) - 1;
-            const Uint32<Real> ray = lane_numbers<Real>() + Uint32<Real>(static_cast<std::uint32_t>(i));
-            pairs.template find<features, Real>(record.ray, signed_ids<Real>(record.leaving_id),
-                                             ray * Uint32<Real>(RayRow<Scalar>::kColumns), valid, work_);
-        }
-        pairs.template meet<features, InBox::No, Real>({stream_.rows(), stream_.distance(), stream_.primitive_id()});
-    }
-
-    RAYPOOL_INLINE void store_row(std::size_t i, const WideRays<Real>& rays, const Hit<Real>& hit) requires Simd<Real> {
-        hit.t.copy_to(stream_.distance() + i, stdx::element_aligned);
-        using Ids = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
-        stdx::static_simd_cast<Ids>(hit.primitive_id).copy_to(stream_.primitive_id() + i, stdx::element_aligned);
-        Vec3<Real> scale;
-        for (int k = 0; k < 3; ++k) scale[k] = Real(1) / rays.ray.direction[k];
-        const Vec3<Real>& origin = rays.ray.origin;
-        const Vec3<Real>& direction = rays.ray.direction;
-        const Real column[12] = {scale[0], scale[1], scale[2], hit.t, origin[0], origin[1], origin[2], rays.ray.time,
-                                 direction[0], direction[1], direction[2], of_bits<Real>(rays.leaving_id)};
-        store_rows<12, Real>(stream_.rows()[i].value, column);
-    }
-
     template <class T>
     static void permute(T* values, const std::uint32_t* order, std::size_t count, std::byte* scratch) {
         T* sorted = reinterpret_cast<T*>(scratch);
@@ -366,11 +288,10 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
 
     const RenderContext<Scalar>& context_;
     int thread_;
-    RayStream<Scalar> stream_;
+    IntersectStage<features, Real, Work> intersect_;
     Contributions<Scalar> contributions_;
     std::vector<double> sort_scratch_;
     SampleConverter converter_;
-    Work work_;
     std::int64_t paths_ = 0;
     std::int64_t segments_ = 0;
 };

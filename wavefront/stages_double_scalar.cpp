@@ -6,6 +6,7 @@ template StagesMaker<record_features(kCompiledFeatures[1]), double>
 stages_maker<kCompiledFeatures[1], double, NoTestCount, Splitting::Off>();
 template StagesMaker<record_features(kEverything), double>
 stages_maker<kEverything, double, NoTestCount, Splitting::Off>();
-template StagesMaker<record_features(kEverything), double> stages_maker<kEverything, double, ListCount, Splitting::On>();
+template StagesMaker<record_features(kEverything), double>
+stages_maker<kEverything, double, ListCount, Splitting::On>();
 
 }  // namespace raypool::wavefront

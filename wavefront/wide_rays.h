@@ -1,12 +1,12 @@
 /// A register of rays against one box or one shape: what packets and streams are made of.
 ///
-/// The mirror image of core/geometry/traverse.h, which has one ray against a register of boxes and shapes; the same kernels of
-/// core/geometry/shapes.h, so the same bits.
+/// The mirror image of core/geometry/traverse.h, which has one ray against a register of boxes and shapes; the same
+/// kernels of core/geometry/shapes.h, so the same bits.
 #pragma once
 
-#include "core/shading/compiled_scene.h"
 #include "core/geometry/shapes.h"
 #include "core/geometry/traverse.h"
+#include "core/shading/compiled_scene.h"
 
 namespace raypool::wavefront {
 

@@ -59,9 +59,9 @@ int hit_count(const CompiledScene<Scalar>& scene, Ray<Scalar> ray, std::uint32_t
         const Scattered<Scalar> out =
             scatter<kEverything, Scalar>(scene, ray, hit.t, hit.primitive_id, vec3<Scalar>(1, 1, 1), {path, 0},
                                          static_cast<std::uint32_t>(hits), random_seed(0));
-        ray.origin = out.origin;
+        ray.origin = out.start.origin;
         ray.direction = out.direction;
-        leaving = static_cast<std::int32_t>(out.leaving_id);
+        leaving = static_cast<std::int32_t>(out.start.leaving_id);
     }
     return kMost;
 }

@@ -112,8 +112,8 @@ class SampleConverter {
         }
         return fixed;
     }
-    /// convert() of eight samples whose channels are columns, where the processor can: fixed[k][i] of channel k. False, and
-    /// nothing of use in `fixed`, where it cannot or a sample is bad.
+    /// convert() of eight samples whose channels are columns, where the processor can: fixed[k][i] of channel k. False,
+    /// and nothing of use in `fixed`, where it cannot or a sample is bad.
     [[nodiscard]] bool convert_eight(const float* const (&channel)[3], std::int64_t (&fixed)[3][8]) const {
         bool is_good = true;
         for (int k = 0; k < 3; ++k) is_good = is_good && x86::round_eight(channel[k], scale_, limit_, fixed[k]);

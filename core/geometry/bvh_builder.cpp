@@ -13,10 +13,10 @@
 #include <memory>
 #include <utility>
 
-#include "core/geometry/bvh.h"
-#include "core/geometry/bvh_bins.h"
 #include "core/base/error.h"
 #include "core/base/first_exception.h"
+#include "core/geometry/bvh.h"
+#include "core/geometry/bvh_bins.h"
 
 namespace raypool {
 

@@ -267,9 +267,10 @@ class Finder {
         QuadIndex quads(std::move(boxes));
         for (std::uint32_t i = 0; i < members.size(); ++i) {
             const std::uint32_t quad = members[i];
-            quads.for_each_near(quads.box(i), out_.planars[quad].point, out_.planars[quad].normal, [&](std::uint32_t k) {
-                if (members[k] < quad && covers(members[k], quad)) out_.is_hidden[id(quad)] = true;
-            });
+            quads.for_each_near(quads.box(i), out_.planars[quad].point, out_.planars[quad].normal,
+                                [&](std::uint32_t k) {
+                                    if (members[k] < quad && covers(members[k], quad)) out_.is_hidden[id(quad)] = true;
+                                });
         }
     }
 
@@ -287,7 +288,9 @@ class Finder {
         return is_covered;
     }
 
-    [[nodiscard]] std::size_t id(std::size_t planar) const { return scene_.spheres.size() + planar; }
+    [[nodiscard]] std::size_t id(std::size_t planar) const {
+        return scene_.spheres.size() + planar;
+    }
 
     const Scene& scene_;
     Coincidence out_;

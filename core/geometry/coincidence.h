@@ -23,7 +23,7 @@ struct Coincidence {
         std::uint32_t group = 0;  ///< an id that shapes which share the plane have in common
     };
     std::vector<bool> is_hidden;  ///< by primitive id
-    std::vector<Planar> planars;      ///< by primitive id, quads first, less the number of spheres
+    std::vector<Planar> planars;  ///< by primitive id, quads first, less the number of spheres
 };
 
 /// For hits that are computed in Scalar. Takes about n log n steps for n shapes, and n^2 where many quads cross one

@@ -1,9 +1,9 @@
 /// Boxes that move with the spheres in them.
 ///
 /// Over the whole shutter, a sphere that moves by many radii fills a box in which it mostly is not. At a time within
-/// [0, 1] its lower bound is linear, and the least of linear bounds is nowhere below the line through its values at both
-/// ends. So a line for each side of a box holds whatever is in it. (Woop, Afra and Benthin, "STBVH: A Spatial-Temporal
-/// BVH for Efficient Multi-Segment Motion Blur", HPG 2017, call these linear bounds.)
+/// [0, 1] its lower bound is linear, and the least of linear bounds is nowhere below the line through its values at
+/// both ends. So a line for each side of a box holds whatever is in it. (Woop, Afra and Benthin, "STBVH: A
+/// Spatial-Temporal BVH for Efficient Multi-Segment Motion Blur", HPG 2017, call these linear bounds.)
 #pragma once
 
 #include <algorithm>
@@ -52,9 +52,9 @@ EndBounds<Scalar> end_bounds(const SphereBlock<Scalar, lanes>& block, int axis) 
 /// The motion of a tree's nodes along an axis; empty where none of its spheres moves along it.
 ///
 /// What a kernel makes of it holds what it makes of each sphere's own box, to the last bit. Let A be the greatest
-/// coordinate of a child's bounds, u = eps / 2. A sphere's box has three roundings: of the product, at most 2 A, of the sum
-/// and of the difference: 4 u A. Of the line, each end has two, the room one, the change, at most 2 A, one, and mad() one:
-/// 6 u A. That is 5 eps A in all, and 16 eps A are left as room.
+/// coordinate of a child's bounds, u = eps / 2. A sphere's box has three roundings: of the product, at most 2 A, of the
+/// sum and of the difference: 4 u A. Of the line, each end has two, the room one, the change, at most 2 A, one, and
+/// mad() one: 6 u A. That is 5 eps A in all, and 16 eps A are left as room.
 template <class Scalar, int width>
 std::vector<NodeMotion<Scalar, width>> node_motion(const BlockTree<SphereBlock<Scalar, width>, Scalar, width>& tree,
                                                    int axis) {

@@ -1,9 +1,11 @@
 /// The shapes of a scene as traversal reads them: blocks of spheres, quads and planes, and trees over blocks.
 ///
-/// Immutable once they are made; shared by all threads without locks.
+/// Tables own their memory; a view points into them, and is all that kernels read. A view is a plain value: it may be
+/// copied to where pointers mean something else. Tables are immutable once they are made, so threads share them.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/geometry/bvh.h"
@@ -40,8 +42,9 @@ struct alignas(64) PlanarBlock {
 /// A tree whose leaf i is block i.
 template <class Block, class Scalar, int width>
 struct BlockTree {
-    std::vector<WideNode<Scalar, width>> nodes;        ///< their bounds hold over all times
-    std::vector<NodeMotion<Scalar, width>> motion[3];  ///< by axis, then by node; empty where no shape moves along the axis
+    std::vector<WideNode<Scalar, width>> nodes;  ///< their bounds hold over all times
+    std::vector<NodeMotion<Scalar, width>>
+        motion[3];  ///< by axis, then by node; empty where no shape moves along the axis
     std::vector<Block> blocks;
     int depth = 0;
 };
@@ -50,6 +53,22 @@ struct BlockTree {
 /// test them all at once, streams and packets one by one against a register of rays.
 template <class Scalar>
 inline constexpr int kTreeWidth = sizeof(Scalar) == 4 ? 8 : Wide<double, stdx::native_simd<double>::size()>::size();
+
+/// A BlockTree, seen.
+template <class Block, class Scalar, int width>
+struct TreeView {
+    std::span<const WideNode<Scalar, width>> nodes;
+    std::span<const NodeMotion<Scalar, width>> motion[3];
+    std::span<const Block> blocks;
+    int depth = 0;
+
+    TreeView() = default;
+    explicit TreeView(const BlockTree<Block, Scalar, width>& tree)
+        : nodes(tree.nodes),
+          motion{tree.motion[0], tree.motion[1], tree.motion[2]},
+          blocks(tree.blocks),
+          depth(tree.depth) {}
+};
 
 template <class Scalar>
 struct ShapeTables {
@@ -61,7 +80,7 @@ struct ShapeTables {
     BlockTree<SphereBlock<Scalar, kWidth>, Scalar, kWidth> sphere_tree;
     BlockTree<PlanarBlock<Scalar, kWidth>, Scalar, kWidth> quad_tree;
 
-    /// Calls visit(std::vector&) for every table: the one list of them.
+    /// Calls visit(std::vector&) for every table.
     template <class Self, class Visit>
     static void for_each_table(Self& self, Visit visit) {
         visit(self.large_spheres);
@@ -74,6 +93,24 @@ struct ShapeTables {
         visit_tree(self.sphere_tree);
         visit_tree(self.quad_tree);
     }
+};
+
+/// ShapeTables, seen.
+template <class Scalar>
+struct ShapeView {
+    static constexpr int kWidth = kTreeWidth<Scalar>;
+
+    std::span<const SphereBlock<Scalar, kWidth>> large_spheres;
+    std::span<const PlanarBlock<Scalar, kWidth>> planes;
+    TreeView<SphereBlock<Scalar, kWidth>, Scalar, kWidth> sphere_tree;
+    TreeView<PlanarBlock<Scalar, kWidth>, Scalar, kWidth> quad_tree;
+
+    ShapeView() = default;
+    explicit ShapeView(const ShapeTables<Scalar>& tables)
+        : large_spheres(tables.large_spheres),
+          planes(tables.planes),
+          sphere_tree(tables.sphere_tree),
+          quad_tree(tables.quad_tree) {}
 };
 
 }  // namespace raypool

@@ -45,8 +45,7 @@ RAYPOOL_INLINE RayInverse<Real> inverse_of_scale(const Vec3<Real>& scale) {
 }
 template <class Real>
 RAYPOOL_INLINE RayInverse<Real> ray_inverse(const Vec3<Real>& direction) {
-    return inverse_of_scale<Real>(
-        vec3<Real>(Real(1) / direction[0], Real(1) / direction[1], Real(1) / direction[2]));
+    return inverse_of_scale<Real>(vec3<Real>(Real(1) / direction[0], Real(1) / direction[1], Real(1) / direction[2]));
 }
 
 /// Where a ray is inside a box: from `enter` (>= 0) to `exit`; nowhere if enter > exit.
@@ -160,9 +159,9 @@ RAYPOOL_INLINE Vec3<Real> toward_sphere(const Vec3<Real>& center0, const Vec3<Re
 /// Whether sphere_distance() may find a hit: false for most that it does not, never for one that it does. `toward`
 /// leads from the ray's origin to the centre.
 ///
-/// Why none is lost. Let u = eps / 2, f the exact test's own origin - centre, g = toward, d the direction, |d|^2 = 1 + h
-/// with |h| <= 9 u, as unit() makes it, R = radius + 4 p. f + g is at most D = 3 u |g| + 9 u reach. The exact test meets
-/// the line where the vector it computes from the centre to the line's closest point, with an error of at most
+/// Why none is lost. Let u = eps / 2, f the exact test's own origin - centre, g = toward, d the direction, |d|^2 = 1 +
+/// h with |h| <= 9 u, as unit() makes it, R = radius + 4 p. f + g is at most D = 3 u |g| + 9 u reach. The exact test
+/// meets the line where the vector it computes from the centre to the line's closest point, with an error of at most
 /// 3.2 u |f| + 3 u radius, is no longer than the radius. So the true distance of line and centre is at most
 /// radius (1 + 3 u) + 3.2 u |f| + D, and with |g|^2 = distance^2 + (g.d)^2 / (1 + h)
 ///     |g|^2 - (g.d)^2 <= R^2 + 27 eps |g|^2,

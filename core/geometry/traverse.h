@@ -30,7 +30,7 @@ struct TestCount {
         if (node.bounds[0][0][lane] <= node.bounds[0][1][lane]) box_tests += std::popcount(rays);
     }
     void count_primitives(int rays) { primitive_tests += rays; }
-    void begin_segment() {}  ///< of a path that is followed by itself; a log of every segment needs to know
+    void begin_segment() {}  ///< called by the per-pixel tracer; a log of segments overrides it
 };
 
 struct NoTestCount {
@@ -195,11 +195,11 @@ RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& r
 
 /// From `child` of the tree on.
 template <Features features, class Real, class Block, class Work>
-RAYPOOL_INLINE void walk(const BlockTree<Block, ScalarOf<Real>, kLanes<Real>>& tree, const SpreadRay<Real>& ray,
+RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tree, const SpreadRay<Real>& ray,
                          Hit<ScalarOf<Real>>& hit, Work& work, std::int32_t child = 0) {
     using S = ScalarOf<Real>;
     if (tree.nodes.empty()) return;
-    const TreeBounds<features, BlockTree<Block, S, kLanes<Real>>> bounds(tree);
+    const TreeBounds<features, TreeView<Block, S, kLanes<Real>>> bounds(tree);
     struct Entry {
         S enter;
         std::int32_t child;
@@ -244,9 +244,9 @@ RAYPOOL_INLINE void walk(const BlockTree<Block, ScalarOf<Real>, kLanes<Real>>& t
 
 }  // namespace detail
 
-/// `leaving_id` is what the ray starts on (Scattered::leaving_id), or kNoPrimitive.
+/// `leaving_id` is what the ray starts on (RayStart::leaving_id), or kNoPrimitive.
 template <Features features, class Scalar, class Work>
-[[gnu::noinline]] Hit<Scalar> closest_hit(const ShapeTables<Scalar>& scene, const Ray<Scalar>& ray,
+[[gnu::noinline]] Hit<Scalar> closest_hit(const ShapeView<Scalar>& scene, const Ray<Scalar>& ray,
                                           std::int32_t leaving_id, Work& work) {
     using Real = Wide<Scalar, kTreeWidth<Scalar>>;
     const SpreadRay<Real> spread(ray, ray_inverse<Scalar>(ray.direction), leaving_id);

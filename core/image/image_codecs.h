@@ -43,9 +43,8 @@ inline ImageContents whole(Image image) {
 inline void check_image_size(std::int64_t width, std::int64_t height, std::int64_t max_side,
                              std::int64_t max_pixels = kMaxImagePixels, const char* what = "width and height") {
     if (width < 1 || height < 1 || width > max_side || height > max_side || width * height > max_pixels) {
-        throw std::runtime_error(
-            fmt::format("{} must be within [1, {}] and at most {} pixels, got {} x {}", what, max_side, max_pixels,
-                        width, height));
+        throw std::runtime_error(fmt::format("{} must be within [1, {}] and at most {} pixels, got {} x {}", what,
+                                             max_side, max_pixels, width, height));
     }
 }
 

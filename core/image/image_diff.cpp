@@ -8,8 +8,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/image/colour_map.h"
 #include "core/base/error.h"
+#include "core/image/colour_map.h"
 
 namespace raypool {
 namespace {

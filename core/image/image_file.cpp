@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/image/image_codecs.h"
 #include "core/base/output_file.h"
 #include "core/base/text.h"
+#include "core/image/image_codecs.h"
 
 namespace raypool {
 namespace {

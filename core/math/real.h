@@ -5,8 +5,8 @@
 /// how many rays it is asked about at a time. That is what lets two engines make one image.
 ///
 /// Idioms: `if (any(mask))` is the branch when Real is a scalar and the skip when it is wide, and select() follows;
-/// literals are Real(2); a fused multiply-add is written mad or nmad and happens nowhere else. any, all, none, mask_bits,
-/// select, mad, nmad, lane and compress_store are overloads in the two halves.
+/// literals are Real(2); a fused multiply-add is written mad or nmad and happens nowhere else. any, all, none,
+/// mask_bits, select, mad, nmad, lane and compress_store are overloads in the two halves.
 #pragma once
 
 #include "core/math/real_scalar.h"
@@ -108,9 +108,9 @@ template <class Real>
 RAYPOOL_INLINE Real from_uint32(const Uint32<Real>& a) {
     return detail::RealOperations<Real>::from_uint32(a);
 }
-/// The integers whose bits are those of `a`, and back: for tables in which a column of integers stands among reals. Such
-/// a column may be moved, and nothing else, unless its values say otherwise (PlanarMark): as a number it can be a NaN, or
-/// too small for the processor to keep.
+/// The integers whose bits are those of `a`, and back: for tables in which a column of integers stands among reals.
+/// Such a column may be moved, and nothing else, unless its values say otherwise (PlanarMark): as a number it can be a
+/// NaN, or too small for the processor to keep.
 template <class Real>
 RAYPOOL_INLINE Int<Real> bits_of(const Real& a) {
     return std::bit_cast<Int<Real>>(a);
@@ -140,7 +140,8 @@ RAYPOOL_INLINE ScalarOf<Real> greatest_lane(const Real& v) {
     return detail::RealOperations<Real>::greatest_lane(v);
 }
 
-/// compress_store() of many registers of Real's lanes with the same bits: LanePacker(bits), then store(target, register).
+/// compress_store() of many registers of Real's lanes with the same bits: LanePacker(bits), then store(target,
+/// register).
 template <class Real>
 using LanePacker = detail::LanePacker<Real>;
 

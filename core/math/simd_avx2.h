@@ -1,9 +1,10 @@
 /// Operations on registers of 128 and 256 bits: AVX2 with FMA (x86-64-v3).
 ///
-/// One overload a register type; only core/math/real_wide.h and the framebuffer call them. Minimum and maximum are those of
-/// the hardware, `a < b ? a : b` and `a > b ? a : b`, so that a scalar comparison gives the same bits, NaN and signed zeros
-/// included. blend() takes `yes` where the mask is set. std::experimental's own where(), fma, min and max are not used:
-/// they are miscompiled by clang 14 with AVX-512, fall apart into scalar calls, or differ from the scalar operation.
+/// One overload a register type; only core/math/real_wide.h and the framebuffer call them. Minimum and maximum are
+/// those of the hardware, `a < b ? a : b` and `a > b ? a : b`, so that a scalar comparison gives the same bits, NaN and
+/// signed zeros included. blend() takes `yes` where the mask is set. std::experimental's own where(), fma, min and max
+/// are not used: they are miscompiled by clang 14 with AVX-512, fall apart into scalar calls, or differ from the scalar
+/// operation.
 #pragma once
 
 #include <immintrin.h>

@@ -85,8 +85,8 @@ RAYPOOL_INLINE void transpose_rows(const float* const (&row)[16], __m512 (&colum
     column[3] = _mm512_shuffle_ps(t1, t3, 0xee);
 }
 
-/// The same of eight consecutive floats: half as many loads and a third of the inserts of four and four. (For eight rows
-/// nothing is gained by it.)
+/// The same of eight consecutive floats: half as many loads and a third of the inserts of four and four. (For eight
+/// rows nothing is gained by it.)
 RAYPOOL_INLINE void transpose_rows(const float* const (&row)[16], __m512 (&column)[8]) {
     __m512 mixed[2][4];  // of eight rows each: columns k and k + 4 of four rows, then of the other four
     for (int half = 0; half < 2; ++half) {
@@ -110,7 +110,8 @@ RAYPOOL_INLINE void transpose_rows(const float* const (&row)[16], __m512 (&colum
 }
 
 RAYPOOL_INLINE float greatest(__m512 v) {
-    return greatest(_mm256_max_ps(_mm512_castps512_ps256(v), _mm256_castpd_ps(_mm512_extractf64x4_pd(_mm512_castps_pd(v), 1))));
+    return greatest(
+        _mm256_max_ps(_mm512_castps512_ps256(v), _mm256_castpd_ps(_mm512_extractf64x4_pd(_mm512_castps_pd(v), 1))));
 }
 RAYPOOL_INLINE double greatest(__m512d v) {
     return greatest(_mm256_max_pd(_mm512_castpd512_pd256(v), _mm512_extractf64x4_pd(v, 1)));

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -13,61 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/shading/compiled_scene.h"
 #include "core/film/framebuffer.h"
-#include "core/math/path.h"
-#include "core/math/random.h"
+#include "core/runtime/settings.h"
+#include "core/shading/compiled_scene.h"
 
 namespace raypool {
-
-struct CostImage;
-class Trace;
-
-/// How a render is handed out to threads: OpenMP's schedule clause; its taskloop, whose grainsize is the chunk; or
-/// balanced items (core/runtime/balanced_items.h), whichever thread is free. chunk 0 is OpenMP's default for the kind.
-struct LoopSchedule {
-    enum class Kind : std::uint8_t { Static, Dynamic, Guided, Tasks, Balanced };
-    Kind kind = Kind::Balanced;
-    int chunk = 0;  ///< none for balanced items
-};
-
-/// Whether the image is cut by the grain; balanced items have a cut of their own.
-constexpr bool has_grain(const LoopSchedule& schedule) {
-    return schedule.kind != LoopSchedule::Kind::Balanced;
-}
-
-/// What one iteration of the parallel loop renders.
-struct Grain {
-    enum class Kind : std::uint8_t { Pixel, Line, Tile };
-    Kind kind = Kind::Line;
-    int tile = 16;  ///< edge of a tile in pixels
-};
-
-/// Paths finished so far, for whoever shows it. Engines add, in batches; another thread may read at any time.
-struct Progress {
-    std::atomic<std::int64_t> paths = 0;
-    std::atomic<std::int64_t> before = 0;  ///< of these, from a run that is gone on with: they took no time now
-};
-
-struct RenderSettings {
-    std::int64_t first_sample = 0;  ///< samples [first_sample, end_sample) of every pixel
-    std::int64_t end_sample = 1;    ///< at most 2^31 - 1
-    std::int32_t depth = 50;        ///< most segments of a path, up to path_step::kMostBounces; 0 makes a black image
-    /// Only these pixels, in rising order (row * width + column); all where null.
-    const std::vector<std::uint32_t>* pixels = nullptr;
-    std::uint64_t seed = 0;
-    Sampler sampler = Sampler::Independent;
-    int split_depth = 0;    ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits
-    bool roulette = false;  ///< end paths that carry little by chance, without bias (core/shading/shade.h)
-    int threads = 1;
-    LoopSchedule schedule;  ///< of an engine that loops over the image; so is the grain
-    Grain grain;
-    bool count_work = false;  ///< count box and primitive tests (slower: with code compiled for every feature)
-    bool log_rounds = false;  ///< report the rounds of a wavefront engine; two looks at the clock a stage and batch
-    Progress* progress = nullptr;
-    Trace* trace = nullptr;           ///< where to put what each thread did when
-    CostImage* cost_image = nullptr;  ///< of the image's size: what to add each pixel's cost to
-};
 
 /// The stages of a round of a wavefront engine. Append is the traffic of records from round to round: what survivors
 /// and split records take to reach their places.
@@ -144,10 +93,10 @@ struct RenderReport {
     std::vector<ThreadReport> threads;
     SampleStatistics statistics;
     std::vector<RoundReport> rounds;  ///< of a wavefront engine, with log_rounds or a trace
-    std::vector<ListLevel> lists;   ///< of a wavefront engine, with count_work: by level, the root first
-    std::size_t record_bytes = 0;   ///< of a wavefront engine: moved in and out of the pool by a record
-    std::size_t pool_rays = 0;      ///< of a wavefront engine: records that each pool has room for
-    std::size_t pool_bytes = 0;     ///< of a wavefront engine: all pools, streams and accumulators at their largest
+    std::vector<ListLevel> lists;     ///< of a wavefront engine, with count_work: by level, the root first
+    std::size_t record_bytes = 0;     ///< of a wavefront engine: moved in and out of the pool by a record
+    std::size_t pool_rays = 0;        ///< of a wavefront engine: records that each pool has room for
+    std::size_t pool_bytes = 0;       ///< of a wavefront engine: all pools, streams and accumulators at their largest
 
     /// Takes in a later render into the same framebuffer.
     void add(const RenderReport& later);
@@ -241,12 +190,12 @@ class Engine {
 
 /// The paths that a render will follow.
 template <class Scalar>
-std::int64_t path_count(const CompiledScene<Scalar>& scene, const RenderUnit& unit) {
+std::int64_t path_count(const SceneView<Scalar>& scene, const RenderUnit& unit) {
     const auto pixels = unit.pixels == nullptr ? scene.pixel_count() : static_cast<std::int64_t>(unit.pixels->size());
     return pixels * (unit.end_sample - unit.first_sample);
 }
 template <class Scalar>
-std::int64_t path_count(const CompiledScene<Scalar>& scene, const RenderSettings& settings) {
+std::int64_t path_count(const SceneView<Scalar>& scene, const RenderSettings& settings) {
     return path_count(scene, RenderUnit{settings.first_sample, settings.end_sample, settings.pixels});
 }
 

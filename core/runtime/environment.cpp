@@ -12,9 +12,9 @@
 #include <nlohmann/json.hpp>
 
 #include "commit.h"
-#include "core/shading/compiled_scene.h"
-#include "core/math/real.h"
 #include "core/base/text.h"
+#include "core/math/real.h"
+#include "core/shading/compiled_scene.h"
 
 extern char** environ;
 

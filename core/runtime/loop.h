@@ -9,8 +9,8 @@
 #include <iterator>
 #include <vector>
 
-#include "core/runtime/engine.h"
 #include "core/base/first_exception.h"
+#include "core/runtime/engine.h"
 #include "core/runtime/trace.h"
 
 namespace raypool {
@@ -178,10 +178,10 @@ inline void count_setup(const RenderSettings& settings, double start_s, int thre
     for (int i = 0; i < threads; ++i) settings.trace->lane(i).span("setup", start_s, end_s);
 }
 
-/// Runs body(ThreadReport&, SampleStatistics&) in settings.threads OpenMP threads under settings.schedule, denormals flushed.
-/// Where OpenMP gives fewer threads, the report and the trace are of those. The body must end in a TeamLoop or a
-/// worksharing loop with nowait; what a thread then waits for the others is measured here. What it throws, this throws;
-/// a body with barriers must throw nothing, since the others would wait for ever.
+/// Runs body(ThreadReport&, SampleStatistics&) in settings.threads OpenMP threads under settings.schedule, denormals
+/// flushed. Where OpenMP gives fewer threads, the report and the trace are of those. The body must end in a TeamLoop or
+/// a worksharing loop with nowait; what a thread then waits for the others is measured here. What it throws, this
+/// throws; a body with barriers must throw nothing, since the others would wait for ever.
 template <class Body>
 RenderReport run_threads(const RenderSettings& settings, Body body) {
     RenderReport report;

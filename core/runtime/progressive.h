@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "core/runtime/engine.h"
 #include "core/film/checkpoint.h"
+#include "core/runtime/engine.h"
 
 namespace raypool {
 

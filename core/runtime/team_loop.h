@@ -27,7 +27,8 @@ class TeamLoop {
     /// where there are tasks: other loops have no barrier.
     template <class Visit>
     double run(std::int64_t count, Visit visit) {
-        if (settings_.schedule.kind == LoopSchedule::Kind::Tasks) return run_tasks(count, std::ref(visit));  // no memory for a copy
+        if (settings_.schedule.kind == LoopSchedule::Kind::Tasks)
+            return run_tasks(count, std::ref(visit));  // no memory for a copy
 #pragma omp for schedule(runtime) nowait
         for (std::int64_t i = 0; i < count; ++i) visit(i);
         return 0;

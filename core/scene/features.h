@@ -17,7 +17,7 @@ namespace raypool {
 struct Features {
     bool motion = false;      ///< a sphere moves while the shutter is open: rays carry a time
     bool defocus = false;     ///< the lens has an area
-    bool planar = false;        ///< quads or planes
+    bool planar = false;      ///< quads or planes
     bool metal = false;       ///< mirrors
     bool fuzz = false;        ///< mirrors that are not perfect
     bool dielectric = false;  ///< glass
@@ -25,7 +25,7 @@ struct Features {
     bool checker = false;     ///< 3-D checkers
     bool uv = false;          ///< textures that need surface coordinates: uv checkers and images
 
-    std::uint8_t variant = 0;  ///< no need but which methods kernels use (methods.h): 0 in every engine
+    std::uint8_t variant = 0;  ///< not a feature: the methods that kernels use (sphere_method.h); 0 in every engine
 
     bool operator==(const Features&) const = default;
 };
@@ -36,14 +36,14 @@ struct FeatureName {
     bool Features::*member;
 };
 inline constexpr std::array<FeatureName, 9> kFeatureNames{{{"motion", &Features::motion},
-                                                             {"defocus", &Features::defocus},
-                                                             {"planar", &Features::planar},
-                                                             {"metal", &Features::metal},
-                                                             {"fuzz", &Features::fuzz},
-                                                             {"dielectric", &Features::dielectric},
-                                                             {"emissive", &Features::emissive},
-                                                             {"checker", &Features::checker},
-                                                             {"uv", &Features::uv}}};
+                                                           {"defocus", &Features::defocus},
+                                                           {"planar", &Features::planar},
+                                                           {"metal", &Features::metal},
+                                                           {"fuzz", &Features::fuzz},
+                                                           {"dielectric", &Features::dielectric},
+                                                           {"emissive", &Features::emissive},
+                                                           {"checker", &Features::checker},
+                                                           {"uv", &Features::uv}}};
 
 /// True when code compiled for `a` can render whatever needs `b`.
 constexpr bool covers(const Features& a, const Features& b) {
@@ -85,7 +85,8 @@ constexpr std::size_t compiled_features_index(const Features& features, std::siz
 template <class Scalar>
 inline constexpr std::size_t kFirstCompiledFeatures = sizeof(Scalar) > sizeof(float) ? 1 : 0;
 
-/// Calls function.template operator()<compiled needs>() with the first compiled set, from the i-th on, that covers `needs`.
+/// Calls function.template operator()<compiled needs>() with the first compiled set, from the i-th on, that covers
+/// `needs`.
 template <std::size_t i = 0, class Function>
 auto dispatch_features(const Features& features, Function&& function) {
     if constexpr (i + 1 < kCompiledFeatures.size()) {

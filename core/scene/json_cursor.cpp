@@ -17,7 +17,8 @@ constexpr std::size_t kLongestQuote = 60;  // of a value that a message repeats
 
 std::string quoted(const std::string& text) {
     const std::string whole = json(text).dump(-1, ' ', true);  // ASCII, so that cutting it cannot split a character
-    return whole.size() <= kLongestQuote ? whole : fmt::format("{}...\"", std::string_view(whole).substr(0, kLongestQuote));
+    return whole.size() <= kLongestQuote ? whole
+                                         : fmt::format("{}...\"", std::string_view(whole).substr(0, kLongestQuote));
 }
 
 std::string describe(const json& value) {

@@ -50,7 +50,7 @@ struct Texture {
     double scale = 1;          ///< edge of a checker cell, > 0: in scene units (Checker3d) or in u and v (CheckerUv)
     Vector3d offset{0, 0, 0};  ///< Checker3d: cell boundaries lie where (p + offset) / scale is whole
     std::shared_ptr<const Image> image;  ///< Image only: values in [0, 1]; shared, since scenes are copied
-    Wrap wrap = Wrap::ByShape;                 ///< Image only
+    Wrap wrap = Wrap::ByShape;           ///< Image only
 };
 
 struct Material {

@@ -11,10 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/image/image_file.h"
-#include "core/scene/json_cursor.h"
 #include "core/base/json_parser.h"
 #include "core/base/text.h"
+#include "core/image/image_file.h"
+#include "core/scene/json_cursor.h"
 
 namespace raypool {
 namespace {

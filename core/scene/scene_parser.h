@@ -1,5 +1,5 @@
-/// The text of a scene (docs/scene-format.md) to a Scene. A scene is complete and within all ranges of core/scene/scene.h, or
-/// InputError names the file, the JSON pointer in it, the rule and the value found.
+/// The text of a scene (docs/scene-format.md) to a Scene. A scene is complete and within all ranges of
+/// core/scene/scene.h, or InputError names the file, the JSON pointer in it, the rule and the value found.
 ///
 /// Called by scene_reader.cpp and by tests. Keeps no state.
 #pragma once

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/scene/builtin_scenes.h"
 #include "core/base/error.h"
+#include "core/scene/builtin_scenes.h"
 
 namespace raypool {
 namespace {

@@ -4,9 +4,9 @@
 /// from the image centre, exact, and the jitter within the pixel, so that a large image loses no jitter.
 #pragma once
 
-#include "core/scene/features.h"
 #include "core/math/random.h"
 #include "core/math/sampling.h"
+#include "core/scene/features.h"
 
 namespace raypool {
 

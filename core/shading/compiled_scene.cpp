@@ -31,25 +31,31 @@ ImageRepeat image_repeat(Texture::Wrap wrap, Shape shape) {
 template <class Scalar>
 class Compiler {
   public:
-    Compiler(const Scene& scene, const Coincidence& coincidence) : scene_(scene), coincidence_(coincidence) {}
+    Compiler(const Scene& scene, const Coincidence& coincidence)
+        : scene_(scene),
+          coincidence_(coincidence),
+          features_(scene_features(scene)),
+          max_radiance_(std::max(scene.background.bottom.maxCoeff(), scene.background.top.maxCoeff())) {}
 
     CompiledScene<Scalar> compile() {
         check_size();
-        out_.features = scene_features(scene_);
-        out_.width = scene_.width;
-        out_.height = scene_.height;
-        out_.camera = make_camera<Scalar>(scene_.camera, scene_.width, scene_.height);
-        const Vector3d middle = 0.5 * (scene_.background.bottom + scene_.background.top);
-        const Vector3d slope = 0.5 * (scene_.background.top - scene_.background.bottom);
-        out_.sky = {middle.cast<Scalar>(), slope.cast<Scalar>()};
-        out_.max_radiance = std::max(scene_.background.bottom.maxCoeff(), scene_.background.top.maxCoeff());
-
         add_textures();
         add_surfaces();
         add_spheres();
         add_planars();
-        CompiledScene<Scalar>::for_each_table(out_, [](auto& table) { table.shrink_to_fit(); });
-        return std::move(out_);
+        SceneTables<Scalar>::for_each_table(out_, [](auto& table) { table.shrink_to_fit(); });
+
+        CompiledScene<Scalar> compiled(std::move(out_));
+        compiled.features = features_;
+        compiled.width = scene_.width;
+        compiled.height = scene_.height;
+        compiled.camera = make_camera<Scalar>(scene_.camera, scene_.width, scene_.height);
+        const Vector3d middle = 0.5 * (scene_.background.bottom + scene_.background.top);
+        const Vector3d slope = 0.5 * (scene_.background.top - scene_.background.bottom);
+        compiled.sky = {middle.cast<Scalar>(), slope.cast<Scalar>()};
+        compiled.max_radiance = max_radiance_;
+        compiled.max_albedo = max_albedo_;
+        return compiled;
     }
 
   private:
@@ -117,7 +123,7 @@ class Compiler {
         set_code(0, 0);
         if (material.kind == Material::Kind::Dielectric) {
             row.value[Row::kParameter] = static_cast<Scalar>(material.ior);
-            out_.max_albedo = 1;
+            max_albedo_ = 1;
             return row;
         }
         const Texture& texture = scene_.textures[material.texture_id];
@@ -126,7 +132,7 @@ class Compiler {
         const int repeat = texture.image ? image_repeat(texture.wrap, shape).number() : 0;
         set_code(static_cast<int>(texture.kind) + repeat, material.texture_id);
         const double brightest = texture.image ? 1 : std::max(texture.even.maxCoeff(), texture.odd.maxCoeff());
-        double& most = material.kind == Material::Kind::Emissive ? out_.max_radiance : out_.max_albedo;
+        double& most = material.kind == Material::Kind::Emissive ? max_radiance_ : max_albedo_;
         most = std::max(most, brightest);
         return row;
     }
@@ -137,7 +143,7 @@ class Compiler {
             Row row = surface_row(sphere.material_id, Shape::Sphere);
             for (int i = 0; i < 3; ++i) {
                 row.value[Row::kCenter + i] = static_cast<Scalar>(sphere.center0[i]);
-                if (out_.features.motion)  // or all rays are of time 0
+                if (features_.motion)  // or all rays are of time 0
                     row.value[Row::kMotion + i] = static_cast<Scalar>(sphere.center1[i] - sphere.center0[i]);
             }
             row.value[Row::kRadius] = static_cast<Scalar>(sphere.radius);
@@ -166,9 +172,8 @@ class Compiler {
     void add_spheres() {
         Ids ids = shown_ids(0, scene_.spheres.size());
         const auto boxes_of = [&](const Ids& of) {
-            return boxes_by_id(of, [&](std::uint32_t id) {
-                return sphere_box<Scalar>(scene_.spheres[id], out_.features.motion ? 1 : 0);
-            });
+            return boxes_by_id(
+                of, [&](std::uint32_t id) { return sphere_box<Scalar>(scene_.spheres[id], features_.motion ? 1 : 0); });
         };
         std::vector<Box> boxes = boxes_of(ids);
         Ids large = large_boxes(boxes, kWidth);
@@ -181,7 +186,7 @@ class Compiler {
         }
         out_.sphere_tree = block_tree<SphereBlock<Scalar, kWidth>>(
             boxes, ids, [&](std::span<const std::uint32_t> in_leaf) { return sphere_block(in_leaf); });
-        if (!out_.features.motion) return;
+        if (!features_.motion) return;
         for (int axis = 0; axis < 3; ++axis) out_.sphere_tree.motion[axis] = node_motion(out_.sphere_tree, axis);
     }
 
@@ -231,7 +236,7 @@ class Compiler {
     }
 
     PlanarBlock<Scalar, kWidth> planar_block(std::span<const std::uint32_t> ids,
-                                         const std::array<Box, kWidth>& boxes) const {
+                                             const std::array<Box, kWidth>& boxes) const {
         PlanarBlock<Scalar, kWidth> block{};
         for (auto& component : block.normal) std::fill_n(component, kWidth, std::numeric_limits<Scalar>::quiet_NaN());
         std::fill_n(block.id, kWidth, kNoPrimitive);
@@ -247,7 +252,8 @@ class Compiler {
                 block.low[i][lane] = static_cast<Scalar>(boxes[lane].low[i]);
                 block.high[i][lane] = static_cast<Scalar>(boxes[lane].high[i]);
             }
-            block.group[lane] = static_cast<std::int32_t>(PlanarMark<Scalar>::group(surface.value[SurfaceRow<Scalar>::kRadius], 0));
+            block.group[lane] =
+                static_cast<std::int32_t>(PlanarMark<Scalar>::group(surface.value[SurfaceRow<Scalar>::kRadius], 0));
             block.id[lane] = static_cast<std::int32_t>(ids[lane]);
         }
         return block;
@@ -282,15 +288,19 @@ class Compiler {
 
     const Scene& scene_;
     const Coincidence& coincidence_;
-    CompiledScene<Scalar> out_;
+    Features features_;
+    double max_radiance_;
+    double max_albedo_ = 0;
+    SceneTables<Scalar> out_;
 };
 
 }  // namespace
 
 template <class Scalar>
 std::size_t CompiledScene<Scalar>::bytes() const {
-    std::size_t bytes = sizeof(*this);
-    for_each_table(*this, [&](const auto& table) { bytes += table.capacity() * sizeof(table[0]); });
+    std::size_t bytes = sizeof(*this) + sizeof(*tables_);
+    SceneTables<Scalar>::for_each_table(*tables_,
+                                        [&](const auto& table) { bytes += table.capacity() * sizeof(table[0]); });
     return bytes;
 }
 
@@ -304,8 +314,8 @@ CompiledScene<Scalar> compile(const Scene& scene) {
     return compile<Scalar>(scene, find_coincidence<Scalar>(scene));
 }
 
-template struct CompiledScene<float>;
-template struct CompiledScene<double>;
+template class CompiledScene<float>;
+template class CompiledScene<double>;
 template CompiledScene<float> compile(const Scene&);
 template CompiledScene<double> compile(const Scene&);
 template CompiledScene<float> compile(const Scene&, const Coincidence&);

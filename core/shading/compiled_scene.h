@@ -6,13 +6,16 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
-#include "core/shading/camera.h"
 #include "core/geometry/coincidence.h"
 #include "core/geometry/shape_tables.h"
 #include "core/scene/features.h"
 #include "core/scene/scene.h"
+#include "core/shading/camera.h"
 #include "core/shading/textures.h"
 
 namespace raypool {
@@ -21,9 +24,9 @@ namespace raypool {
 template <class Scalar>
 struct alignas(4 * sizeof(Scalar)) SurfaceRow {
     enum Column {
-        kCenter = 0,     ///< of a sphere at time 0, three; or the unit normal of a quad or plane
-        kRadius = 3,     ///< of a sphere; of a quad or plane the PlanarMark of the group that a ray which leaves it leaves
-        kMotion = 4,     ///< of the centre from time 0 to 1, three; or a point of the plane of a quad or plane
+        kCenter = 0,  ///< of a sphere at time 0, three; or the unit normal of a quad or plane
+        kRadius = 3,  ///< of a sphere; of a quad or plane the PlanarMark of the group that a ray which leaves it leaves
+        kMotion = 4,  ///< of the centre from time 0 to 1, three; or a point of the plane of a quad or plane
         kParameter = 7,  ///< fuzz of metal, index of refraction of glass
         kColour = 8,     ///< three: albedo or radiance; of a checker the even colour
         kCode = 11,      ///< the bits of a SurfaceCode
@@ -40,8 +43,9 @@ struct PlanarMark {
     static constexpr ScalarOf<Int<Real>> kSign = std::bit_cast<ScalarOf<Int<Real>>>(ScalarOf<Real>(-2));
 
     RAYPOOL_INLINE static Real make(const Int<Real>& group) { return of_bits<Real>(group | Int<Real>(kSign)); }
-    /// Of a row whose kRadius is `radius`: the group of a quad or plane, and `sphere_id` of a sphere. A single ray gets it
-    /// without a branch, which it would often take by surprise. (clang 14 cannot shift registers of 64-bit integers by 63.)
+    /// Of a row whose kRadius is `radius`: the group of a quad or plane, and `sphere_id` of a sphere. A single ray gets
+    /// it without a branch, which it would often take by surprise. (clang 14 cannot shift registers of 64-bit integers
+    /// by 63.)
     RAYPOOL_INLINE static Int<Real> group(const Real& radius, const Int<Real>& sphere_id) {
         const Int<Real> bits = bits_of<Real>(radius);
         const Int<Real> group = bits & Int<Real>((1 << kGroupBits) - 1);
@@ -92,31 +96,14 @@ struct Sky {
     Vec3<Scalar> slope;   ///< ... plus this times the direction's y
 };
 
+/// What compile() makes of shapes, materials and textures.
 template <class Scalar>
-struct CompiledScene : ShapeTables<Scalar> {
-    Features features;
-    std::int64_t width = 0;  ///< of the image, in pixels
-    std::int64_t height = 0;
-    Camera<Scalar> camera;
-    Sky<Scalar> sky;
-    double max_radiance = 0;  ///< no path carries more to the image in any channel
-    double max_albedo = 0;    ///< no hit leaves a path more of its throughput in any channel
-
+struct SceneTables : ShapeTables<Scalar> {
     std::vector<SurfaceRow<Scalar>> surfaces;  ///< by primitive id
     std::vector<TextureRow<Scalar>> textures;  ///< by texture id
-    std::vector<PlanarRow<Scalar>> planars;        ///< of the last primitives, by id less first_planar()
+    std::vector<PlanarRow<Scalar>> planars;    ///< of the last primitives, by id less first_planar()
     std::vector<ImageView<Scalar>> images;     ///< by texture id, beside `textures`
     std::vector<Scalar> texels;
-
-    /// Radiance that a limit of depth cuts off a pixel, on average over its paths: at most this in any channel.
-    [[nodiscard]] double truncation_bound(std::int32_t depth) const {
-        return max_radiance * std::pow(max_albedo, depth);
-    }
-
-    /// The id of the first quad or plane.
-    [[nodiscard]] std::size_t first_planar() const { return surfaces.size() - planars.size(); }
-    [[nodiscard]] std::int64_t pixel_count() const { return width * height; }
-    [[nodiscard]] std::size_t bytes() const;  ///< of all tables, with this
 
     /// Calls visit(std::vector&) for every table: the one list of them.
     template <class Self, class Visit>
@@ -128,6 +115,53 @@ struct CompiledScene : ShapeTables<Scalar> {
         visit(self.texels);
         ShapeTables<Scalar>::for_each_table(self, visit);
     }
+};
+
+/// All that a kernel may ask of a scene: a plain value whose pointers lead into tables.
+template <class Scalar>
+struct SceneView : ShapeView<Scalar> {
+    Features features;
+    std::int64_t width = 0;  ///< of the image, in pixels
+    std::int64_t height = 0;
+    Camera<Scalar> camera;
+    Sky<Scalar> sky;
+    double max_radiance = 0;  ///< no path carries more to the image in any channel
+    double max_albedo = 0;    ///< no hit leaves a path more of its throughput in any channel
+
+    std::span<const SurfaceRow<Scalar>> surfaces;
+    std::span<const TextureRow<Scalar>> textures;
+    std::span<const PlanarRow<Scalar>> planars;
+    std::span<const ImageView<Scalar>> images;
+
+    /// Radiance that a limit of depth cuts off a pixel, on average over its paths: at most this in any channel.
+    [[nodiscard]] double truncation_bound(std::int32_t depth) const {
+        return max_radiance * std::pow(max_albedo, depth);
+    }
+
+    /// The id of the first quad or plane.
+    [[nodiscard]] std::size_t first_planar() const { return surfaces.size() - planars.size(); }
+    [[nodiscard]] std::int64_t pixel_count() const { return width * height; }
+};
+
+/// A view with the tables that it sees. Copies share them.
+template <class Scalar>
+class CompiledScene : public SceneView<Scalar> {
+  public:
+    /// Sees `tables`; all that is no table is still to be set.
+    explicit CompiledScene(SceneTables<Scalar>&& tables)
+        : tables_(std::make_shared<const SceneTables<Scalar>>(std::move(tables))) {
+        static_cast<ShapeView<Scalar>&>(*this) = ShapeView<Scalar>(*tables_);
+        this->surfaces = tables_->surfaces;
+        this->textures = tables_->textures;
+        this->planars = tables_->planars;
+        this->images = tables_->images;
+    }
+
+    [[nodiscard]] const SceneTables<Scalar>& tables() const { return *tables_; }
+    [[nodiscard]] std::size_t bytes() const;  ///< of all tables, with this
+
+  private:
+    std::shared_ptr<const SceneTables<Scalar>> tables_;
 };
 
 /// Refuses (InputError) an image of more than 2^32 pixels, or more primitives than ids. Shapes that coincide count once

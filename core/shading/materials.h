@@ -45,7 +45,7 @@ struct FresnelSplit {
 /// eta = 1 the boundary is invisible: no reflection, and the direction's bits pass unchanged.
 template <class Real>
 RAYPOOL_INLINE FresnelSplit<Real> fresnel_split(const Vec3<Real>& direction, const Vec3<Real>& normal,
-                                                      const Real& eta) {
+                                                const Real& eta) {
     const Real cos_in = min(-dot<Real>(direction, normal), Real(1));
     const Real k = nmad<Real>(eta * eta, nmad<Real>(cos_in, cos_in, Real(1)), Real(1));
     const Mask<Real> is_total = k < Real(0);

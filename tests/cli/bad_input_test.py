@@ -134,7 +134,7 @@ class BadOption(CommandTest):
                 "--output": ("out", "out.gif", "out.png.txt", ".png/", ""),
                 "--stats": ("",),
                 "--trace": ("",),
-                "--cost-image": ("out", "out.gif", "out.png.txt", ".png/", ""),
+                "--cost-image": ("out", "out.gif", "out.png.txt", ".png/", "out.png", ""),
                 "--cost": ("time", ""),
                 "--pool-rays": ("0", "-1", "1.5", "0KB", "-1KB", "KB", "1kb", "1 KB", "1KB ", "1B", "1KiB", "0x1KB", "1e3",
                                 2**31, f"{2**31}KB", "99999999999999999999MB", "")}.items():
@@ -144,7 +144,7 @@ class BadOption(CommandTest):
                     self.assert_refused("render", "scene.json", f"{option}={value}", named=named)
 
     def test_for_what_an_engine_cannot_know_is_refused(self):
-        self.assert_refused("render", "scene.json", "--engine", "wavefront", "--cost-image", "cost.png",
+        self.assert_refused("render", "scene.json", "--engine", "wavefront", "--cost-image", "cost.pfm",
                             named=["--cost-image", "recursive", "iterative"])
         for accumulator in ("owned", "owned-planar"):
             self.assert_refused("render", "scene.json", "--engine", "wavefront", "--pool-scope", "shared",

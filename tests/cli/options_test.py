@@ -17,7 +17,7 @@ class OptionThatDoesNothing(CommandTest):
 
     def test_of_a_pool_is_refused_by_engines_without_one(self):
         for option, value in POOL_OPTIONS.items():
-            for engine in (("--cost-image", "cost.png"), ("--engine", "recursive"), ("--engine", "iterative")):
+            for engine in (("--cost-image", "cost.pfm"), ("--engine", "recursive"), ("--engine", "iterative")):
                 self.assert_idle("render", "scene.json", *engine, option, value, named=[option, "--engine wavefront"])
 
     def test_of_a_shared_pool_is_refused_by_the_pools_of_threads(self):

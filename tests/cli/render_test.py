@@ -376,12 +376,10 @@ class CostImage(CommandTest):
         _, nanoseconds = self.costs("--cost", "ns")
         self.assertGreater(min(nanoseconds), 0)
 
-    def test_is_values_or_a_picture_with_a_scale(self):
+    def test_is_values_in_either_format_with_the_kind_of_cost(self):
         for cost in ("segments", "tests", "ns"):
-            result = self.run_well("render", "scene.json", "--spp", 1, "--cost", cost, "--cost-image", "cost.png")
-            self.assertTrue(result.stdout.endswith("\ncost.png\n"))
-            width, height = struct.unpack(">II", (self.folder / "cost.png").read_bytes()[16:24])
-            self.assertGreater(width, 8 / 6 * height)
+            result = self.run_well("render", "scene.json", "--spp", 1, "--cost", cost, "--cost-image", "cost.pfm")
+            self.assertTrue(result.stdout.endswith("\ncost.pfm\n"))
         self.costs("--cost", "segments")
         self.run_well("render", "scene.json", "--spp", 3, "--cost", "segments", "--cost-image", "cost.exr")
         self.run_well("diff", "cost.exr", "cost.pfm")

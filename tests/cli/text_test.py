@@ -51,7 +51,7 @@ class Text(CommandTest):
         for scene, name in ((NOT_UTF8, "bad\ufffd"), (ESCAPE.encode(), "red\x1b[31m\x07\n")):
             for image in ("out.exr", "out.png"):
                 self.run_bytes("render", scene, "--spp", 1, "-o", image, "--stats", "s.json", "--trace", "t.json",
-                               "--cost-image", "cost." + image)
+                               "--cost-image", "cost.exr")
                 self.assertEqual(self.json_of("s.json")["settings"]["scene"], name)
                 self.assertEqual(self.json_of("t.json")["otherData"]["raypool.scene"], name)
                 self.assertIn(b"raypool.scene", (self.folder / image).read_bytes())

@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <string>
 
-#include "core/shading/compiled_scene.h"
-#include "core/runtime/engine.h"
 #include "core/film/framebuffer.h"
+#include "core/runtime/engine.h"
 #include "core/scene/scene_reader.h"
+#include "core/shading/compiled_scene.h"
 #include "recursive/engine.h"
 
 int main() {

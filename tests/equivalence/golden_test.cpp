@@ -1,6 +1,6 @@
 // The committed scenes still make the images that they made when golden_hashes.json was written: on any compiler and
-// for any instruction set. Where an image had to change, raise kImageVersion (core/film/checkpoint.h), write the hashes and
-// pictures anew, look at the pictures, and say in the change why:
+// for any instruction set. Where an image had to change, raise kImageVersion (core/film/checkpoint.h), write the hashes
+// and pictures anew, look at the pictures, and say in the change why:
 //
 //     RAYPOOL_UPDATE_GOLDEN=1 ctest --preset release --tests-regex Golden
 //

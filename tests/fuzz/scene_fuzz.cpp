@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "core/shading/compiled_scene.h"
 #include "core/base/error.h"
 #include "core/scene/scene_parser.h"
+#include "core/shading/compiled_scene.h"
 #include "recursive/engine.h"
 #include "tests/fuzz/fuzz_target.h"
 

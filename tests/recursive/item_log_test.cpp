@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/runtime/balanced_items.h"
 #include "core/base/error.h"
+#include "core/runtime/balanced_items.h"
 #include "tests/small_render.h"
 #include "tests/trace_spans.h"
 #include "wavefront/engine.h"

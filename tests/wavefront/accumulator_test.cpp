@@ -55,8 +55,8 @@ std::vector<std::int64_t> expected_sums(const std::vector<Contribution>& all) {
     return sums_of(out);
 }
 
-/// All threads at once add to `accumulator`, a few contributions at a time, in an order made by `seed`. With `owned` each
-/// thread adds what belongs to its own pixels, otherwise whatever comes.
+/// All threads at once add to `accumulator`, a few contributions at a time, in an order made by `seed`. With `owned`
+/// each thread adds what belongs to its own pixels, otherwise whatever comes.
 void add_all(AccumulatorBase<float>& accumulator, const FixedPoint& fixed, const std::vector<Contribution>& all,
              std::uint64_t seed, bool owned) {
     std::vector<std::size_t> order(all.size());

@@ -1,4 +1,5 @@
-/// How many records a pool has room for where nobody says: by the trees and the cache, and never more than it was given.
+/// How many records a pool has room for where nobody says: by the trees and the cache, and never more than it was
+/// given.
 #include "wavefront/capacity.h"
 
 #include <limits>

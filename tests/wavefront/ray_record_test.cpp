@@ -122,7 +122,7 @@ TYPED_TEST(RecordColumns, LoadRecordsOneALane) {
         for (int i = 0; i < kLanes<Real> && first + static_cast<std::uint32_t>(i) < kCount; ++i) {
             const auto expected = record_of<ScalarOf<Real>>(first + static_cast<std::uint32_t>(i));
             for_each_pair<kFeatures>(loaded, expected,
-                                  [&](const auto& wide, const auto& value) { ASSERT_EQ(lane(wide, i), value); });
+                                     [&](const auto& wide, const auto& value) { ASSERT_EQ(lane(wide, i), value); });
             if (!kFeatures.motion) {
                 ASSERT_EQ(lane(loaded.ray.time, i), 0);
             }

@@ -276,7 +276,8 @@ TYPED_TEST(RaysTogether, HitInBeamsWhatEachHitsAlone) {
             for (int i = 0; i < count; ++i) {
                 const auto expected = single_hit(scene, rays[static_cast<std::size_t>(i)]);
                 const Hit<Real>& got = hit[i / kLanes<Real>];
-                ASSERT_EQ(lane(got.primitive_id, i % kLanes<Real>), expected.primitive_id) << test.name << ", ray " << i;
+                ASSERT_EQ(lane(got.primitive_id, i % kLanes<Real>), expected.primitive_id)
+                    << test.name << ", ray " << i;
                 ASSERT_EQ(lane(got.t, i % kLanes<Real>), expected.t) << test.name << ", ray " << i;
             }
         }

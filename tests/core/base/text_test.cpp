@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/image/image_file.h"
 #include "core/base/json_file.h"
+#include "core/image/image_file.h"
 #include "core/runtime/trace.h"
 #include "tests/scratch_folder.h"
 

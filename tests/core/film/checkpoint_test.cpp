@@ -8,8 +8,8 @@
 #include <xxhash.h>
 
 #include "core/base/error.h"
-#include "tests/scratch_folder.h"
 #include "tests/random_inputs.h"
+#include "tests/scratch_folder.h"
 
 namespace raypool::test {
 namespace {

@@ -1,11 +1,11 @@
 /// The closest hit by asking every shape, one by one: what any walk through any tree must return, to the last bit.
 ///
-/// The rules are those of core/geometry/shapes.h: a shape that has a box counts only where the ray is inside its own padded box;
-/// of equal distances the smaller id counts.
+/// The rules are those of core/geometry/shapes.h: a shape that has a box counts only where the ray is inside its own
+/// padded box; of equal distances the smaller id counts.
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "core/geometry/traverse.h"
 
@@ -62,7 +62,7 @@ Scalar shape_distance(const Block& block, int lane, const Ray<Scalar>& ray, std:
 }
 
 template <InBox in_box, class Scalar, class Block>
-void ask_all(const std::vector<Block>& blocks, const Ray<Scalar>& ray, std::int32_t leaving_id, Hit<Scalar>& hit) {
+void ask_all(std::span<const Block> blocks, const Ray<Scalar>& ray, std::int32_t leaving_id, Hit<Scalar>& hit) {
     for (const Block& block : blocks)
         for (int lane = 0; lane < Block::kLanes; ++lane)
             if (block.id[lane] != kNoPrimitive)
@@ -70,7 +70,7 @@ void ask_all(const std::vector<Block>& blocks, const Ray<Scalar>& ray, std::int3
 }
 
 template <class Scalar>
-Hit<Scalar> brute_force_hit(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray, std::int32_t leaving_id) {
+Hit<Scalar> brute_force_hit(const ShapeView<Scalar>& scene, const Ray<Scalar>& ray, std::int32_t leaving_id) {
     Hit<Scalar> hit;
     ask_all<InBox::No>(scene.large_spheres, ray, leaving_id, hit);
     ask_all<InBox::No>(scene.planes, ray, leaving_id, hit);

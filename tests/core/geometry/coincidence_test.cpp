@@ -9,10 +9,10 @@
 
 #include <gtest/gtest.h>
 
+#include "core/geometry/traverse.h"
 #include "core/scene/scene_hash.h"
 #include "core/scene/scene_parser.h"
 #include "core/shading/shade.h"
-#include "core/geometry/traverse.h"
 #include "tests/physics/test_scene.h"
 #include "tests/random_inputs.h"
 #include "wavefront/engine.h"
@@ -111,8 +111,8 @@ void expect_one_surface(const CompiledScene<Scalar>& scene, const Frame& frame, 
             scatter<kEverything, Scalar>(scene, ray, hit.t, hit.primitive_id, vec3<Scalar>(1, 1, 1),
                                          {static_cast<std::uint32_t>(i), 0}, 0, random_seed(0));
         for (const Vec3<Scalar>& way : {out.direction, ray.direction}) {
-            const Hit<Scalar> next =
-                closest_hit<kEverything>(scene, {out.origin, way, 0}, static_cast<std::int32_t>(out.leaving_id), work);
+            const Hit<Scalar> next = closest_hit<kEverything>(scene, {out.start.origin, way, 0},
+                                                              static_cast<std::int32_t>(out.start.leaving_id), work);
             ASSERT_EQ(next.primitive_id, kNoPrimitive) << name << ", again at " << next.t;
         }
     }
@@ -149,8 +149,8 @@ TYPED_TEST(Coincident, ShapesLeftToTheirIdsAloneAreMetTwice) {
         const Hit<TypeParam> hit = closest_hit<kEverything>(compiled, ray, kNoPrimitive, work);
         const Scattered<TypeParam> out = scatter<kEverything, TypeParam>(
             compiled, ray, hit.t, hit.primitive_id, vec3<TypeParam>(1, 1, 1), {7, 0}, 0, random_seed(0));
-        const Hit<TypeParam> next = closest_hit<kEverything>(compiled, {out.origin, out.direction, 0},
-                                                             static_cast<std::int32_t>(out.leaving_id), work);
+        const Hit<TypeParam> next = closest_hit<kEverything>(compiled, {out.start.origin, out.direction, 0},
+                                                             static_cast<std::int32_t>(out.start.leaving_id), work);
         twice += next.primitive_id != kNoPrimitive ? 1 : 0;
     }
     EXPECT_GT(twice, 20) << "otherwise the tests beside this one see nothing";
@@ -251,7 +251,8 @@ TYPED_TEST(Coincident, FacesOfASmallBoxStayTheirOwnHoweverLargeTheScene) {
     scene.spheres.push_back({{0, 1.5e11, 0}, {0, 1.5e11, 0}, 6.9e8, scene.emitter(5)});
     const Coincidence found = find_coincidence<TypeParam>(scene);
     for (std::size_t i = 0; i < 6; ++i)
-        for (std::size_t k = 0; k < i; ++k) EXPECT_NE(found.planars[i].group, found.planars[k].group) << i << " and " << k;
+        for (std::size_t k = 0; k < i; ++k)
+            EXPECT_NE(found.planars[i].group, found.planars[k].group) << i << " and " << k;
 }
 
 TYPED_TEST(Coincident, PlanesAreOneWhicheverPointTheyAreGivenBy) {
@@ -374,7 +375,8 @@ TYPED_TEST(Coincident, QuadsAreHiddenByAnEarlierOneThatCoversThem) {
         EXPECT_EQ(find_coincidence<TypeParam>(scene).is_hidden, std::vector<bool>(2)) << "the smaller one is first";
         const Quad across = quad_of(f.at - 0.2 * f.u - 0.2 * f.v, 0.4 * f.u, 0.4 * f.v);
         scene.quads = {quad_of(f.at - f.u - f.v, f.u, 2 * f.v), quad_of(f.at - f.v, f.u, 2 * f.v), across};
-        EXPECT_EQ(find_coincidence<TypeParam>(scene).is_hidden, std::vector<bool>(3)) << "no single one covers the lamp";
+        EXPECT_EQ(find_coincidence<TypeParam>(scene).is_hidden, std::vector<bool>(3))
+            << "no single one covers the lamp";
     }
 }
 

@@ -1,4 +1,5 @@
-/// Boxes that move with their spheres: at any time they hold each sphere's own box to the last bit, and they spare work.
+/// Boxes that move with their spheres: at any time they hold each sphere's own box to the last bit, and they spare
+/// work.
 #include "core/geometry/node_motion.h"
 
 #include <gtest/gtest.h>
@@ -118,7 +119,7 @@ TYPED_TEST(NodeMotion, IsThereAlongNoAxisOnWhichNothingMoves) {
 TYPED_TEST(NodeMotion, SparesTestsAndLosesNoHit) {
     const auto scene = compile<TypeParam>(moving_cloud(500, 0, {0, 0, 40}, 0.5));
     auto over_the_shutter = scene;
-    for (auto& along_axis : over_the_shutter.sphere_tree.motion) along_axis.clear();
+    for (auto& along_axis : over_the_shutter.sphere_tree.motion) along_axis = {};
     RandomInputs random(3);
     TestCount spared;
     TestCount all;

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/runtime/engine.h"
 #include "core/geometry/shapes.h"
+#include "core/runtime/engine.h"
 #include "tests/errors.h"
 #include "tests/random_inputs.h"
 

@@ -1,9 +1,9 @@
 /// may_meet_sphere(), the cheap test before the exact one: it loses no hit, and lets few misses through.
 #include <gtest/gtest.h>
 
-#include "core/runtime/engine.h"
 #include "core/geometry/shape_bounds.h"
 #include "core/geometry/shapes.h"
+#include "core/runtime/engine.h"
 #include "tests/random_inputs.h"
 
 namespace raypool::test {
@@ -23,8 +23,8 @@ Vector3d center_of(const HardCase<Scalar>& hard) {
     return hard.sphere.center0 + double{hard.time} * (hard.sphere.center1 - hard.sphere.center0);
 }
 
-/// Small and large, near and far from the origin and from the ray, grazing and central, from outside, inside and off the
-/// surface.
+/// Small and large, near and far from the origin and from the ray, grazing and central, from outside, inside and off
+/// the surface.
 template <class Scalar>
 HardCase<Scalar> hard_case(RandomInputs& random) {
     HardCase<Scalar> hard;
@@ -40,10 +40,10 @@ HardCase<Scalar> hard_case(RandomInputs& random) {
     const double radius = hard.sphere.radius;
     hard.is_leaving = random.one_in(3);
     const Vector3d out = random.direction<double>();
-    const double from = hard.is_leaving      ? radius * (1 + kEpsilon * random.uniform(-4, 4))
-                        : random.one_in(4)   ? radius * random.uniform(0, 1)
-                        : random.one_in(4)   ? radius * (1 + kEpsilon * random.uniform(-8, 8))
-                                             : radius + std::abs(random.magnitude<double>(-20, 24));
+    const double from = hard.is_leaving    ? radius * (1 + kEpsilon * random.uniform(-4, 4))
+                        : random.one_in(4) ? radius * random.uniform(0, 1)
+                        : random.one_in(4) ? radius * (1 + kEpsilon * random.uniform(-8, 8))
+                                           : radius + std::abs(random.magnitude<double>(-20, 24));
     const Vector3d origin = center + from * out;
     // Through a point at right angles to the way to the centre: nearly tangent, or at any distance from the centre.
     Vector3d aside = random.direction<double>();
@@ -54,8 +54,7 @@ HardCase<Scalar> hard_case(RandomInputs& random) {
     const double sine = std::min(1.0, off / from);
     const Vector3d toward = random.one_in(8) ? out : Vector3d(-out);
     hard.origin = origin.cast<Scalar>();
-    hard.direction = unit<Scalar>(
-        Vector3d(std::sqrt(1 - sine * sine) * toward + sine * aside).template cast<Scalar>());
+    hard.direction = unit<Scalar>(Vector3d(std::sqrt(1 - sine * sine) * toward + sine * aside).template cast<Scalar>());
     return hard;
 }
 

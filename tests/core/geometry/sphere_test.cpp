@@ -1,9 +1,9 @@
 /// Rays against spheres, judged by 128-bit arithmetic: far, grazing, huge, tiny, translated, and left again.
 #include <gtest/gtest.h>
 
+#include "core/geometry/shapes.h"
 #include "core/shading/materials.h"
 #include "core/shading/shade.h"
-#include "core/geometry/shapes.h"
 #include "tests/core/geometry/aimed_ray.h"
 #include "tests/core/geometry/exact_sphere.h"
 #include "tests/errors.h"

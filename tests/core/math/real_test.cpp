@@ -121,8 +121,8 @@ TEST(RealOperations, MasksTellTheBitOfEachLane) {
     expect_masks_tell_their_bits<stdx::native_simd<double>>();
 }
 
-/// Every pattern of lanes, and both the numbers and the words that travel beside them; one register alone, and as one of
-/// many.
+/// Every pattern of lanes, and both the numbers and the words that travel beside them; one register alone, and as one
+/// of many.
 template <class Real, class V, class T>
 void expect_chosen_lanes_at_the_front(int lanes) {
     T all[16];

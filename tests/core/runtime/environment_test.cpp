@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/math/real.h"
 #include "core/base/text.h"
+#include "core/math/real.h"
 
 namespace raypool {
 namespace {

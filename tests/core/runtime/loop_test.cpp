@@ -132,7 +132,8 @@ TEST(RunThreads, AppliesTheScheduleAndPutsBackWhatOpenMpHadBefore) {
         run_threads(settings, [&](ThreadReport&, SampleStatistics&) { omp_get_schedule(&kind_within, &chunk_within); });
         EXPECT_EQ(kind_within & ~omp_sched_monotonic, omp_sched_dynamic);
         EXPECT_EQ(chunk_within, 3);
-        EXPECT_THROW(run_threads(settings, [](ThreadReport&, SampleStatistics&) { throw InputError("no"); }), InputError);
+        EXPECT_THROW(run_threads(settings, [](ThreadReport&, SampleStatistics&) { throw InputError("no"); }),
+                     InputError);
         make_by_threads(settings, [](int) {});
         omp_sched_t kind{};
         int chunk = 0;

@@ -60,7 +60,8 @@ RenderReport run_tasks(std::int64_t count, std::chrono::microseconds task) {
 
 /// Far more than a runtime keeps in line for two threads.
 TEST(TeamLoop, SharesOutTasksHoweverMany) {
-    for (const ThreadReport& thread : run_tasks(1000, std::chrono::microseconds(50)).threads) EXPECT_GT(thread.paths, 100);
+    for (const ThreadReport& thread : run_tasks(1000, std::chrono::microseconds(50)).threads)
+        EXPECT_GT(thread.paths, 100);
 }
 
 TEST(TeamLoop, CountsWaitingForTasksAsWaiting) {

@@ -45,13 +45,13 @@ TEST(Features, AreNoneOfMaterialsThatNoShapeUses) {
 
 TEST(Features, FollowTheMaterialsOfEveryKindOfShape) {
     const std::vector<Features> expected{{},
-                                           {.metal = true},
-                                           {.metal = true, .fuzz = true},
-                                           {.dielectric = true},
-                                           {.emissive = true},
-                                           {.checker = true},
-                                           {.uv = true},
-                                           {.uv = true}};
+                                         {.metal = true},
+                                         {.metal = true, .fuzz = true},
+                                         {.dielectric = true},
+                                         {.emissive = true},
+                                         {.checker = true},
+                                         {.uv = true},
+                                         {.uv = true}};
     for (std::int32_t material_id = 0; material_id < 8; ++material_id) {
         Features features = expected[static_cast<std::size_t>(material_id)];
         EXPECT_EQ(scene_features(with_sphere(material_id)), features) << material_id;

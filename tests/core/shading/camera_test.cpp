@@ -29,7 +29,7 @@ template <Features features, class Scalar>
 Ray<Scalar> ray_through(const Camera<Scalar>& camera, std::int64_t width, std::int64_t x, std::int64_t y,
                         std::uint32_t sample) {
     return camera_ray<features, Scalar>(camera, Scalar(x), Scalar(y), static_cast<std::uint32_t>(y * width + x), sample,
-                                     random_seed(0));
+                                        random_seed(0));
 }
 
 TEST(Camera, LooksAtLookAtWithYUpAndXToTheRight) {
@@ -173,8 +173,10 @@ TEST(Camera, GivesTheLastPixelOfTheLargestImageAKeyOfItsOwn) {
     const auto pixel = static_cast<std::uint32_t>((kSize - 1) * kSize + kSize - 1);
     EXPECT_EQ(pixel, 0xffffffffU);
     const RandomSeed seed = random_seed(0);
-    EXPECT_NE(random_block<float>({pixel, 0}, 0, RandomPurpose::Film, seed), random_block<float>({0, 0}, 0, RandomPurpose::Film, seed));
-    EXPECT_NE(random_block<float>({pixel, 0}, 0, RandomPurpose::Film, seed), random_block<float>({pixel - 1, 0}, 0, RandomPurpose::Film, seed));
+    EXPECT_NE(random_block<float>({pixel, 0}, 0, RandomPurpose::Film, seed),
+              random_block<float>({0, 0}, 0, RandomPurpose::Film, seed));
+    EXPECT_NE(random_block<float>({pixel, 0}, 0, RandomPurpose::Film, seed),
+              random_block<float>({pixel - 1, 0}, 0, RandomPurpose::Film, seed));
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/shading/shade.h"
 #include "core/geometry/traverse.h"
+#include "core/shading/shade.h"
 #include "tests/physics/test_scene.h"
 #include "tests/random_inputs.h"
 
@@ -54,8 +54,8 @@ void expect_one_layer_of_cells(const Floor& floor, std::uint64_t seed) {
         if (hit.primitive_id == kNoPrimitive) continue;
         const Scattered<Scalar> out =
             scatter<kEverything, Scalar>(compiled, ray, hit.t, 0, vec3<Scalar>(1, 1, 1), {0, 0}, 0, random_seed(0));
-        const double x = static_cast<double>(out.origin[0]) / floor.scale;
-        const double z = static_cast<double>(out.origin[2]) / floor.scale;
+        const double x = static_cast<double>(out.start.origin[0]) / floor.scale;
+        const double z = static_cast<double>(out.start.origin[2]) / floor.scale;
         constexpr double kFromEdges = 1e-3;
         if (std::abs(x - std::round(x)) < kFromEdges || std::abs(z - std::round(z)) < kFromEdges) continue;
         const double sum = std::floor(x) + layer + std::floor(z);

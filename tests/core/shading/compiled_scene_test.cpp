@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/scene/scene_reader.h"
 #include "core/geometry/shapes.h"
 #include "core/geometry/traverse.h"
+#include "core/scene/scene_reader.h"
 #include "tests/random_inputs.h"
 
 namespace raypool::test {
@@ -78,7 +78,7 @@ template <class Tree>
 Box check_bounds(const Tree& tree, std::int32_t child, const std::vector<float>& times) {
     Box below;
     if (child >= 0) {
-        const auto& node = tree.nodes.at(static_cast<std::size_t>(child));
+        const auto& node = tree.nodes[static_cast<std::size_t>(child)];
         for (int lane = 0; lane < std::ssize(node.child); ++lane) {
             Box bounds;
             for (int axis = 0; axis < 3; ++axis) {
@@ -93,7 +93,7 @@ Box check_bounds(const Tree& tree, std::int32_t child, const std::vector<float>&
         }
         return below;
     }
-    const auto& block = tree.blocks.at(static_cast<std::size_t>(~child));
+    const auto& block = tree.blocks[static_cast<std::size_t>(~child)];
     for (int lane = 0; lane < block.kLanes; ++lane) {
         if (block.id[lane] == kNoPrimitive) continue;
         for (const float time : times) {

@@ -2,10 +2,10 @@
 /// scatter_agreement_test.cpp, the operations that kernels are made of in real_test.cpp.
 #include <gtest/gtest.h>
 
+#include "core/geometry/shapes.h"
 #include "core/shading/camera.h"
 #include "core/shading/materials.h"
 #include "core/shading/shade.h"
-#include "core/geometry/shapes.h"
 #include "core/shading/textures.h"
 #include "tests/core/math/lane_agreement.h"
 

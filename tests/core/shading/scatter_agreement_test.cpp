@@ -2,10 +2,10 @@
 /// bits one path at a time or a register of paths at a time.
 #include <gtest/gtest.h>
 
-#include "core/shading/camera.h"
-#include "core/scene/scene_reader.h"
-#include "core/shading/shade.h"
 #include "core/geometry/traverse.h"
+#include "core/scene/scene_reader.h"
+#include "core/shading/camera.h"
+#include "core/shading/shade.h"
 #include "tests/core/math/lane_agreement.h"
 
 namespace raypool::test {
@@ -32,7 +32,7 @@ class PathHits {
         const Scattered<Scalar> out = scatter<kEverything, Scalar>(scene_, ray_, hit.t, hit.primitive_id, throughput_,
                                                                    key_, bounce_, random_seed(0));
         if (!out.is_alive || bounce_ == 50) return start(random);
-        ray_.origin = out.origin;
+        ray_.origin = out.start.origin;
         ray_.direction = out.direction;
         throughput_ = out.throughput;
         leaving_id_ = static_cast<std::int32_t>(hit.primitive_id);
@@ -77,9 +77,9 @@ void run_scatter(const CompiledScene<Scalar>& scene, const RandomSeed& seed, boo
     const Uint32<Real> sample = in.word();
     const Uint32<Real> step = in.word();
     constexpr int kSplitDepth = splitting == Splitting::On ? 3 : 0;
-    const Scattered<Real> after = scatter<features, Real, splitting>(scene, ray, t, id, throughput, {pixel, sample}, step,
-                                                                  seed, kSplitDepth, roulette);
-    out(after.origin), out(after.throughput);
+    const Scattered<Real> after = scatter<features, Real, splitting>(scene, ray, t, id, throughput, {pixel, sample},
+                                                                     step, seed, kSplitDepth, roulette);
+    out(after.start.origin), out(after.throughput);
     out(select<Real>(after.is_emitter, throughput, after.direction));  // of an ended path it means nothing
     out.mask(after.is_alive), out.mask(after.is_emitter);
     if constexpr (splitting == Splitting::On) {

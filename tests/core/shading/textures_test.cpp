@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/shading/compiled_scene.h"
 #include "core/scene/scene_reader.h"
+#include "core/shading/compiled_scene.h"
 #include "core/shading/shade.h"
 #include "tests/core/geometry/exact_sphere.h"
 #include "tests/errors.h"
