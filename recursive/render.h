@@ -80,16 +80,20 @@ class LineTracer {
     /// Traces samples [first, end) of some pixels, which other threads may add to where `addition` says so.
     virtual void trace(const LinePixels& line, std::int64_t first, std::int64_t end, Addition addition,
                        ProgressBatch& progress) = 0;
+    /// Ends the paths that trace() left under way, once there are no more lines.
+    virtual void finish() {}
     virtual void report(ThreadReport& work, SampleStatistics& statistics) const = 0;
 };
 
-template <Form form, Features features, class Scalar, class Work, Splitting splitting, Rules rules>
+template <Form form, Features features, class Scalar, class Work, Splitting splitting, Rules rules,
+          class Hits = SceneTrees>
 class alignas(64) CompiledLineTracer final : public LineTracer {
   public:
-    CompiledLineTracer(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer)
+    CompiledLineTracer(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer,
+                       const Hits& hits = {})
         : width_(scene.width),
           framebuffer_(framebuffer),
-          tracer_(scene, settings, framebuffer.fixed_point()),
+          tracer_(scene, settings, framebuffer.fixed_point(), hits),
           cost_(settings.cost_image) {}
 
     void trace(const LinePixels& line, std::int64_t first, std::int64_t end, Addition addition,
@@ -132,14 +136,14 @@ class alignas(64) CompiledLineTracer final : public LineTracer {
 
     std::int64_t width_;
     Framebuffer& framebuffer_;
-    Tracer<features, Scalar, Work, splitting, rules> tracer_;
+    Tracer<features, Scalar, Work, splitting, rules, Hits> tracer_;
     PixelCost cost_;
 };
 
 /// What the loop over the image asks of the code that was picked.
 template <class Scalar>
 struct TracerMaker {
-    std::unique_ptr<LineTracer> (*make)(const CompiledScene<Scalar>&, const RenderSettings&, Framebuffer&);
+    std::function<std::unique_ptr<LineTracer>(const CompiledScene<Scalar>&, const RenderSettings&, Framebuffer&)> make;
     void (*check_stack)(std::int32_t depth, int threads);  ///< null where the stack does not grow with the depth
 };
 
@@ -220,6 +224,7 @@ class Session : public RenderSession {
                 visit(item, trace_line);
                 log.stop();
             });
+            tracer.finish();
             tracer.report(work, statistics);
         });
         report.setup_s += setup_s;

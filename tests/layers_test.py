@@ -20,7 +20,7 @@ ALLOWED = {folder: set(CORE[:i]) for i, folder in enumerate(CORE)}
 ALLOWED.update({engine: set(CORE) for engine in ENGINES})
 ALLOWED["cluster"] = set(CORE)
 ALLOWED["bench/naive"] = {"core/base", "core/math", "core/geometry", "core/shading"}
-ALLOWED["bench/peers"] = set(CORE)
+ALLOWED["bench/peers"] = {*CORE, *ENGINES}
 ALLOWED["bench/accuracy"] = {*CORE, *ENGINES}
 ALLOWED["bench/stability"] = {*CORE, *ENGINES, "bench/naive"}
 ALLOWED["bench/studies"] = {*CORE, *ENGINES, "cluster", *BENCH[:4]}
@@ -29,7 +29,7 @@ ALLOWED["cli"] = {*CORE, *ENGINES, "cluster", "bench/accuracy", "bench/peers", "
 
 # Libraries that only these folders may include, so that no other needs them.
 LIBRARIES = {"png.h": {"core/image"}, "Imf": {"core/image"}, "mpi.h": {"cluster"}, "embree3/": {"bench/peers"},
-             "CLI/": {"cli", "bench/peers"}, "xxhash.h": {"core/base", "core/scene", "core/film", "bench/accuracy"},
+             "CLI/": {"cli"}, "xxhash.h": {"core/base", "core/scene", "core/film", "bench/accuracy"},
              "boost/": {"core/image", "bench/accuracy"}}
 
 

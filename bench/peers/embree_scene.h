@@ -1,106 +1,150 @@
-/// A Scene in Embree 3: spheres and quads as user geometries with their own intersection functions, planes (which have
-/// no box) tested by hand before, and a table of what the surfaces are made of.
+/// A compiled scene in Embree 3: the shapes of our trees as user geometries, which Embree's traversal leads to and our
+/// kernels test. Large spheres and planes, which are in no tree, are tested before, as every engine does.
 ///
-/// Called by the peer's tracers. Immutable once made, and safe to trace from several threads. A primitive's id counts
-/// spheres, quads, planes. A ray carries the id of the primitive it starts on in its `id` field; it cannot hit that
-/// flat, and of that sphere it meets the far side only, so there is no least distance to choose.
+/// Called by the tracers of bench/peers/. Immutable once made, and safe to trace from several threads.
 #pragma once
 
 #include <embree3/rtcore.h>
 
-#include <cstdint>
 #include <memory>
 #include <type_traits>
 #include <vector>
 
-#include "bench/peers/numbers.h"
-#include "core/scene/scene.h"
+#include "core/shading/compiled_scene.h"
+#include "wavefront/wide_rays.h"
 
 namespace raypool::peers {
 
-using PacketRay = std::conditional_t<kPacket == 16, RTCRay16, RTCRay8>;
-using PacketRayHit = std::conditional_t<kPacket == 16, RTCRayHit16, RTCRayHit8>;
+/// A packet: as many rays as fill a register, 16 with AVX-512, else 8.
+using Packet = stdx::native_simd<float>;
 
-inline constexpr std::uint32_t kNothing = RTC_INVALID_GEOMETRY_ID;
+/// Embree's rays and their hits, of a float or a Packet. Of the hit, primID is used: the id of the closest primitive.
+template <class Real>
+using RayHit =
+    std::conditional_t<kLanes<Real> == 1, RTCRayHit, std::conditional_t<kLanes<Real> == 16, RTCRayHit16, RTCRayHit8>>;
 
-struct SphereShape {
-    V3<float> center;
-    float radius;
-    V3<float> motion;
+/// A field of these as the kernels take it.
+template <class T>
+RAYPOOL_INLINE T get(const auto& field) {
+    return std::bit_cast<T>(field);
+}
+template <class T>
+RAYPOOL_INLINE void set(auto& field, const T& value) {
+    static_assert(sizeof(field) == sizeof(value));
+    std::memcpy(&field, &value, sizeof(field));
+}
+
+/// What a call of Embree hands on to the kernels: Embree knows the context alone, which comes first.
+template <class Real>
+struct Query {
+    RTCIntersectContext context;
+    wavefront::WideRays<Real> rays;
 };
 
-/// A quad or a plane. (u, v) are the offset from the corner along the dual vectors.
-struct PlanarShape {
-    V3<float> corner, normal, dual_u, dual_v;
-};
+/// What Embree calls for a shape, by its kind.
+struct ShapeFunctions {
+    RTCIntersectFunctionN sphere;
+    RTCIntersectFunctionN quad;
 
-/// What Embree is given as the user pointer of a geometry.
-template <class Shape>
-struct ShapeTable {
-    std::vector<Shape> shapes;
-    std::vector<RTCBounds> bounds;
-    std::uint32_t first_id = 0;
-};
+    template <Features features, class Real>
+    static ShapeFunctions make() {
+        return {intersect<features, Real, SphereBlock<float, 1>>, intersect<features, Real, PlanarBlock<float, 1>>};
+    }
 
-/// The columns of a primitive's row in the surface table.
-struct Surface {
-    enum Column : std::uint8_t {
-        kShape = 0,       ///< a sphere's centre, a flat's normal
-        kRadius = 3,      ///< 0 for a flat
-        kMotion = 4,      ///<
-        kMaterial = 7,    ///< Material::Kind
-        kColour = 8,      ///<
-        kParameter = 11,  ///< fuzz or index of refraction
-        kTexture = 12,    ///< Texture::Kind
-        kOdd = 13,        ///< the checker's other colour
-        kOffset = 16,     ///< the checker's
-        kDensity = 19,    ///< cells a unit
-        kImage = 20,      ///< index into the scene's textures
-        kRepeatU = 21,    ///< whether the image begins anew beyond its edges
-        kRepeatV = 22,
-        kColumns = 24
-    };
+  private:
+    /// Tests a shape against the rays that Embree says are valid.
+    template <Features features, class Real, class Block>
+    static void intersect(const RTCIntersectFunctionNArguments* args) {
+        auto& rayhit = *reinterpret_cast<RayHit<Real>*>(args->rayhit);
+        const auto t = get<Real>(rayhit.ray.tfar);
+        Hit<Real> hit{t, get<Int<Real>>(rayhit.hit.primID)};
+        if constexpr (Simd<Real>) {  // nothing is closer than 0
+            const Int<Real> valid(args->valid, stdx::element_aligned);
+            hit.t = select(as_mask<Real>(valid != Int<Real>(0)), t, Real(0));
+        }
+        const Mask<Real> is_closer = wavefront::intersect_lane<features, InBox::Yes, Real>(
+            static_cast<const Block*>(args->geometryUserPtr)[args->primID], 0,
+            reinterpret_cast<const Query<Real>*>(args->context)->rays, hit);
+        if (none(is_closer)) return;
+        set(rayhit.ray.tfar, select(is_closer, hit.t, t));
+        set(rayhit.hit.primID, hit.primitive_id);
+    }
 };
 
 class EmbreeScene {
   public:
-    explicit EmbreeScene(const Scene& scene);
+    EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions& functions);
     EmbreeScene(const EmbreeScene&) = delete;  // Embree points into it
     EmbreeScene& operator=(const EmbreeScene&) = delete;
     ~EmbreeScene() = default;
 
-    /// Closest hits of the rays, in place. Ids are in hit.primID, counted through all shapes, where hit.geomID is not
-    /// kNothing. In a packet, is_active is -1 or 0 a lane.
-    void intersect(RTCRayHit& ray) const;
-    void intersect(const WideInt& is_active, PacketRayHit& rays) const;
-
-    [[nodiscard]] const float* surfaces() const { return surfaces_.data(); }
-    [[nodiscard]] const Texture& texture(int id) const { return textures_[static_cast<std::size_t>(id)]; }
+    /// The closest hits, `hit` or closer, of the rays whose `valid` is not 0.
+    template <class Real>
+    RAYPOOL_INLINE Hit<Real> closest(Query<Real>& query, const Hit<Real>& hit, const Int<Real>& valid) const {
+        const Ray<Real>& ray = query.rays.ray;
+        RayHit<Real> rayhit;
+        set(rayhit.ray.org_x, ray.origin[0]), set(rayhit.ray.dir_x, ray.direction[0]);
+        set(rayhit.ray.org_y, ray.origin[1]), set(rayhit.ray.dir_y, ray.direction[1]);
+        set(rayhit.ray.org_z, ray.origin[2]), set(rayhit.ray.dir_z, ray.direction[2]);
+        set(rayhit.ray.tnear, Real(0)), set(rayhit.ray.tfar, hit.t), set(rayhit.ray.time, ray.time);
+        set(rayhit.ray.mask, Int<Real>(-1)), set(rayhit.ray.flags, Int<Real>(0));
+        set(rayhit.hit.primID, hit.primitive_id);
+        rtcInitIntersectContext(&query.context);
+        alignas(64) std::int32_t is_valid[kLanes<Real>];
+        set(is_valid, valid);
+        if constexpr (kLanes<Real> == 1) {
+            rtcIntersect1(scene_.get(), &query.context, &rayhit);
+        } else if constexpr (kLanes<Real> == 16) {
+            rtcIntersect16(is_valid, scene_.get(), &query.context, &rayhit);
+        } else {
+            rtcIntersect8(is_valid, scene_.get(), &query.context, &rayhit);
+        }
+        return {get<Real>(rayhit.ray.tfar), get<Int<Real>>(rayhit.hit.primID)};
+    }
 
   private:
-    void add_surface(const Scene& scene, int material_id, V3<float> shape, float radius, V3<float> motion,
-                     bool is_plane = false);
-    template <class Shape>
-    void attach(ShapeTable<Shape>& table, RTCIntersectFunctionN intersect);
-
-    template <class RayHit, class Mask>
-    void test_planes(Mask is_active, RayHit& rayhit) const;
+    template <class Block, class Blocks>
+    void attach(std::vector<Block>& shapes, const Blocks& blocks, bool can_move, RTCIntersectFunctionN intersect);
 
     template <auto release>
     struct Release {
-        template <class Handle>
-        void operator()(Handle handle) const {
-            release(handle);
-        }
+        void operator()(auto handle) const { release(handle); }
     };
 
-    ShapeTable<SphereShape> spheres_;
-    ShapeTable<PlanarShape> quads_;
-    ShapeTable<PlanarShape> planes_;  ///< not Embree's: bounds stay empty
-    std::vector<float> surfaces_;
-    std::vector<Texture> textures_;
+    std::vector<SphereBlock<float, 1>> spheres_;
+    std::vector<PlanarBlock<float, 1>> quads_;
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release<rtcReleaseDevice>> device_;
     std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>> scene_;
 };
+
+/// The closest hit of one ray.
+template <Features features>
+RAYPOOL_INLINE Hit<float> closest_hit(const EmbreeScene& embree, const SceneView<float>& scene, const Ray<float>& ray,
+                                      std::int32_t leaving_id) {
+    using Shapes = Wide<float, kTreeWidth<float>>;
+    Query<float> query{{}, {ray, ray_inverse<float>(ray.direction), leaving_id}};
+    const SpreadRay<Shapes> spread(ray, query.rays.inverse, leaving_id);
+    Hit<float> hit;
+    const auto test_all = [&](const auto& blocks) {
+        for (const auto& block : blocks) detail::intersect_block<features, InBox::No, Shapes>(block, spread, hit);
+    };
+    test_all(scene.large_spheres);
+    if constexpr (features.planar) test_all(scene.planes);
+    return embree.closest<float>(query, hit, -1);
+}
+
+/// The closest hits of the rays in `is_active`; those of the others mean nothing.
+template <Features features>
+RAYPOOL_INLINE Hit<Packet> closest_hits(const EmbreeScene& embree, const SceneView<float>& scene,
+                                        const Ray<Packet>& ray, const Int<Packet>& leaving_id,
+                                        const Mask<Packet>& is_active) {
+    Query<Packet> query{{}, {ray, ray_inverse<Packet>(ray.direction), leaving_id}};
+    Hit<Packet> hit;
+    NoTestCount work;
+    wavefront::intersect_all<features>(scene.large_spheres, query.rays, kLanes<Packet>, hit, work);
+    if constexpr (features.planar)
+        wavefront::intersect_all<features>(scene.planes, query.rays, kLanes<Packet>, hit, work);
+    return embree.closest<Packet>(query, hit, select(is_active, Int<Packet>(-1), Int<Packet>(0)));
+}
 
 }  // namespace raypool::peers

@@ -11,13 +11,12 @@
 #include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
 #include "bench/studies/verdict.h"
-#include "core/scene/scene_reader.h"
 #include "core/runtime/settings_text.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
 
 #ifdef RAYPOOL_HAS_EMBREE
-#include "bench/peers/embree_path_tracer.h"
+#include "bench/peers/embree_engine.h"
 #endif
 
 namespace raypool::studies {
@@ -97,23 +96,6 @@ Case split_case(const wavefront::Rung& rung, const std::shared_ptr<const StudySc
             run};
 }
 
-#ifdef RAYPOOL_HAS_EMBREE
-Case peer_case(const char* name, peers::PeerMode mode, const std::shared_ptr<const Scene>& scene,
-               const RenderSettings& settings, int repeats) {
-    const auto run = [name, mode, scene, settings]() -> std::vector<Row> {
-        Image image;
-        const peers::PeerReport report = peers::render_embree(
-            *scene, {settings.end_sample, settings.depth, settings.seed, settings.threads, mode}, image);
-        const double rate = static_cast<double>(report.paths) / report.seconds * 1e-6;
-        Row row{name, settings.threads, nullptr, nullptr, scene->width,    report.seconds,
-                rate, nullptr,          nullptr, nullptr, report.segments, "off"};
-        for (const Value& part : no_parts()) row.push_back(part);
-        return {row};
-    };
-    return {fmt::format("{}, {} threads", name, settings.threads), "", repeats, run};
-}
-#endif
-
 /// Time of a thread for each segment, ns.
 std::vector<double> ns_per_segment(const Table& rows) {
     std::vector<double> ns;
@@ -170,11 +152,12 @@ class Ladder : public Study {
             for (const wavefront::Rung& rung : wavefront::ladder(threads))
                 cases.push_back(split_case(rung, scene, settings, repeats));
 #ifdef RAYPOOL_HAS_EMBREE
-            Scene described = load_scene(options.scene);
-            set_width(described, width);
-            const auto shared = std::make_shared<const Scene>(std::move(described));
-            cases.push_back(peer_case("Embree, single rays", peers::PeerMode::Single, shared, settings, repeats));
-            cases.push_back(peer_case("Embree, packets", peers::PeerMode::Packet, shared, settings, repeats));
+            using peers::EmbreeEngine;
+            using peers::EmbreeRays;
+            for (const NamedEngine& engine :
+                 {NamedEngine{"Embree, single rays", std::make_shared<EmbreeEngine>(EmbreeRays::Single)},
+                  NamedEngine{"Embree, packets", std::make_shared<EmbreeEngine>(EmbreeRays::Packet)}})
+                cases.push_back(rate_case(engine, scene, settings, repeats));
 #endif
         }
         return cases;

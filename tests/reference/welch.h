@@ -1,6 +1,6 @@
 /// Welch's test: whether two sets of independent values have the same mean, their variances unknown and unequal.
 ///
-/// Called by tests/peers/; whether a p-value is too small is for tests/significance.h to say.
+/// Called by tests/reference/; whether a p-value is too small is for tests/significance.h to say.
 #pragma once
 
 #include <algorithm>
