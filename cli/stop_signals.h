@@ -7,7 +7,7 @@
 namespace raypool::cli {
 
 /// Takes SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2 and SIGXCPU while it lives; there is one at a time. What was ignored
-/// stays ignored, as nohup wants it. The first signal is kept for whoever looks; a later one ends the program at once.
+/// stays ignored, as nohup wants it. The first signal is kept to be asked for; a later one ends the program at once.
 /// What comes within a quarter of a second counts as the first, since `timeout` signals a process and then its group.
 /// So does any further SIGXCPU, which the system sends again with each second of processor time.
 class StopSignals {

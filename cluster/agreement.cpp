@@ -17,7 +17,7 @@ std::vector<Statement> told(Ranks& ranks, const Statement& own) {
     return by_rank;
 }
 
-/// Whoever refuses ends the job and does not come here, so nobody goes on.
+/// A rank that refuses ends the job and does not come here, so no rank goes on.
 void wait_for_all(Ranks& ranks) {
     (void)ranks.greatest(0);
 }

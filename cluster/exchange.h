@@ -11,7 +11,7 @@
 
 namespace raypool::cluster {
 
-/// Rank 0's framebuffer becomes the sum of all, and what others hold in theirs zero: who adds more adds it once.
+/// Rank 0's framebuffer becomes the sum of all, and those of the others zero: what is added later is added once.
 /// Nothing to do for one with second moments (rank_engine.h).
 void gather(Ranks& ranks, Framebuffer& framebuffer);
 

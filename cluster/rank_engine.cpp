@@ -92,7 +92,7 @@ class RankSession : public RenderSession {
                 session_->add({unit.samples.first, unit.samples.end, is_part ? &pixels : all.pixels});
             report.add(part);
             const double idle_until = omp_get_wtime() + (slowness_ - 1) * part.seconds;
-            while (omp_get_wtime() < idle_until) continue;  // a slow processor is busy, and leaves its time to nobody
+            while (omp_get_wtime() < idle_until) continue;  // a slow processor is busy, and leaves its time to no other
         };
         ranks_.hand_out(static_cast<std::int64_t>(units.size()), work, [&](std::int64_t i) {
             if (progress_ != nullptr) progress_->paths += units[static_cast<std::size_t>(i)].paths();

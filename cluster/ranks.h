@@ -1,6 +1,6 @@
 /// The processes that `mpirun` started for one render: which of them this one is, and all that they say to each other.
 ///
-/// A Ranks is one rank, which has nobody to talk to; what it is asked to do is then nothing, or a copy. The real ones
+/// A Ranks is one rank, which has no other to talk to; what it is asked to do is then nothing, or a copy. The real ones
 /// are in ranks_mpi.cpp, the only file that knows MPI. It is built where CMake finds MPI, as a module that is loaded
 /// where a launcher has started the command: without one, the command starts as fast as if there were no MPI.
 ///

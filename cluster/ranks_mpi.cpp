@@ -32,7 +32,7 @@ void in_chunks(std::span<Element> values, Call call) {
         call(values.data(), static_cast<int>(std::min(kChunk, values.size())));
 }
 
-/// A rank's question for work, on its way. It is asked before the unit at hand is begun, so that nobody waits for the
+/// A rank's question for work, on its way. It is asked before the unit at hand is begun, so that no rank waits for the
 /// answer: rank 0's thread may have to wait some milliseconds for a processor, as all of them are at work.
 class Question {
   public:
@@ -52,7 +52,7 @@ class Question {
     MPI_Request receipt_ = MPI_REQUEST_NULL;
 };
 
-/// Answers those who ask for work until each has been told that none is left, or until it is stopped.
+/// Answers ranks that ask for work until each has been told that none is left, or until it is stopped.
 ///
 /// A thread of rank 0 does this, because rank 0 computes too: MPI moves only when it is called, and a rank would wait
 /// for an answer as long as rank 0 is busy with a unit. A counter in rank 0's memory (MPI_Fetch_and_op) needs no thread
@@ -136,7 +136,7 @@ void MpiRanks::hand_out(std::int64_t count, const Work& work, const Work& given)
         for (std::int64_t unit = take(); unit != kNoneLeft; unit = take()) work(unit);
         clerk.join();  // when all have ended
     } catch (...) {
-        clerk.request_stop();  // the job ends: who asks now gets no answer
+        clerk.request_stop();  // the job ends: a question gets no answer now
         throw;
     }
 }

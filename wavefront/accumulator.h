@@ -29,7 +29,7 @@ class AccumulatorBase {
     AccumulatorBase& operator=(const AccumulatorBase&) = delete;
     virtual ~AccumulatorBase() = default;
     virtual void add(const Contributions<Scalar>& contributions, SampleConverter& converter, int thread) = 0;
-    /// Whether threads share pixels from now on. Only who takes it that they do not must know. For one thread.
+    /// Whether threads share pixels from now on. An accumulator that relies on owned pixels must know. For one thread.
     virtual void share_pixels(bool /*are_shared*/) {}
     /// 0 where it adds to the framebuffer itself.
     [[nodiscard]] virtual std::size_t block_count() const { return 0; }

@@ -29,7 +29,7 @@ class PathCounter {
         std::int64_t count;
     };
     explicit PathCounter(std::int64_t total) : total_(total) {}
-    /// Up to `most` paths that nobody else gets.
+    /// Up to `most` paths that no other thread gets.
     Part take(std::size_t most) {
         const std::int64_t begin = next_.fetch_add(static_cast<std::int64_t>(most), std::memory_order_relaxed);
         return {begin, std::clamp<std::int64_t>(total_ - begin, 0, static_cast<std::int64_t>(most))};

@@ -3,7 +3,7 @@
 /// Its memory is taken when it is made; within a render it takes no more and throws nothing.
 ///
 /// A stage's time is what passes between start() and stop(); what lies between a stop() and the next start() is
-/// nobody's. In the trace a round is what lies between two calls of end_round().
+/// counted for none. In the trace a round is what lies between two calls of end_round().
 #pragma once
 
 #include <omp.h>

@@ -1,7 +1,7 @@
 /// The stages of a round, for one thread and one batch of records: generate, intersect, shade, accumulate.
 ///
 /// Where recursion follows one path through all of its bounces, a stage takes one bounce of many paths. A batch is a
-/// range of a pool; who cuts the pool into batches and when is the business of the round loops in rounds.h. Survivors
+/// range of a pool; the round loops in rounds.h cut the pool into batches. Survivors
 /// of a batch end up at its front.
 #pragma once
 
@@ -99,7 +99,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         return survivors;
     }
 
-    // What advance() is made of, in its order, for whoever looks at one stage alone.
+    // What advance() is made of, in its order, for benchmarks of one stage.
 
     /// Finds the closest hits of records [first, first + count), which then lie in stream().
     void intersect(const Records& records, std::size_t first, std::size_t count) {

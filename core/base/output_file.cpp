@@ -196,7 +196,7 @@ void write_file(const fs::path& path, const Target& target, ByteSpan content) {
         if (error != 0) fail(path, error);
         return;
     }
-    // First, so that nobody reads in it what the old file would not have let him.
+    // First, so that the new file can be read by no more users than the old one.
     const bool is_alike = !target.old || (temporary.becomes_like(*target.old) && target.old->st_nlink == 1);
     int error = temporary.fill(content);
     if (error != 0) fail(path, error);

@@ -3,7 +3,7 @@
 // and boxes keep their order on either side: so the tree is the same, bit for bit, for any number of threads.
 //
 // Boxes are moved from one buffer to another and back, so that each range is read from first to last: 128 bytes a box
-// for the two, while the tree is built. Threads are as many as OpenMP gives who asks for none.
+// for the two, while the tree is built. Threads are as many as OpenMP gives by default.
 
 #include <omp.h>
 

@@ -1,4 +1,4 @@
-/// Quads by place, for whoever takes them one after the other: which of those left are near a box and a plane.
+/// Quads by place, to be taken one after the other: which of those left are near a box and a plane.
 #pragma once
 
 #include <array>

@@ -9,7 +9,7 @@
 /// Which hit is the closest must not depend on the order in which a tree is walked. Two rules see to that. First,
 /// box distances are monotonic: a box inside another is entered no earlier, to the last bit, since both use the same
 /// operations. Second, a hit counts only where the ray is inside the primitive's own padded box (is_inside_box), so
-/// whoever skips a box because it is entered beyond the closest hit skips no hit that would have been closer.
+/// a walk that skips a box because it is entered beyond the closest hit skips no hit that would have been closer.
 #pragma once
 
 #include <array>

@@ -5,7 +5,7 @@
 /// numbers: some pixels, or some samples of a pixel. Items are for whichever thread is free; they shrink as "factoring"
 /// has it (Hummel, Schonberg and Flynn, 1992): a part of what is left in equal items, one for each thread, again and
 /// again. Items are of whole pixels, which then belong to one thread, as long as a pixel is a small part of a thread's
-/// share. Where it is not, boundaries lie anywhere, and whoever adds must do it atomically. Pure.
+/// share. Where it is not, boundaries lie anywhere, and contributions must be added atomically. Pure.
 #pragma once
 
 #include <algorithm>

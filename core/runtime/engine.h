@@ -203,7 +203,7 @@ std::int64_t path_count(const SceneView<Scalar>& scene, const RenderSettings& se
 void check_settings(const RenderSettings& settings, const Framebuffer& framebuffer);
 
 /// Makes the calling thread treat denormal numbers as zero while it lives; engines hold one in every thread. A path
-/// whose throughput fades would otherwise cost hundreds of times more for light nobody can see.
+/// whose throughput fades would otherwise cost hundreds of times more for light that cannot be seen.
 class FlushDenormals {
   public:
     FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | kFlushToZero | kDenormalsAreZero); }

@@ -49,7 +49,7 @@ struct OrderSettings {
     Grain grain;
 };
 
-/// Paths finished so far, for whoever shows it. Engines add, in batches; another thread may read at any time.
+/// Paths finished so far, to be shown. Engines add, in batches; another thread may read at any time.
 struct Progress {
     std::atomic<std::int64_t> paths = 0;
     std::atomic<std::int64_t> before = 0;  ///< of these, from a run that is gone on with: they took no time now

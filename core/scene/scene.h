@@ -1,7 +1,7 @@
 /// The scene as its author wrote it: plain values in double precision, in scene units, seconds and degrees.
 ///
 /// Made by scene_reader.h (from JSON) or by hand; turned into the tables that the engines read by compiled_scene.h.
-/// The reader lets only values within the ranges given here pass; whoever makes a scene by hand keeps to them. Ids are
+/// The reader lets only values within the ranges given here pass; a program that makes a scene keeps to them. Ids are
 /// indices into the vectors below. Radiance and colours are linear RGB with the primaries of sRGB.
 #pragma once
 

@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kHitsBeforeRoulette = 3;
 /// Ends paths by chance and makes up for it in those that go on (Arvo and Kirk, "Particle Transport and Image
 /// Synthesis", 1990): a path survives with the probability q = min(1, greatest channel of its throughput) and is
 /// divided by q, so that its expectation stays. q is rounded up to a multiple of 2^-24, the step of `random`: then
-/// random < q has exactly that probability. Returns who survives.
+/// random < q has exactly that probability. Returns the paths that survive.
 template <class Real>
 RAYPOOL_INLINE Mask<Real> survives_roulette(Vec3<Real>& throughput, const Real& random, const Mask<Real>& is_played) {
     constexpr float kSteps = 1U << 24U;
