@@ -1,7 +1,7 @@
 /// A register of paths side by side, over Embree's packets: what EmbreeEngine has in place of the tracer of recursive/.
 ///
-/// A lane whose path has ended takes the next path, of this line or of the next, so a packet is full until its thread runs
-/// out of paths. Shading is the pool's: the kernels of core/, a register at a time.
+/// A lane whose path has ended takes the next path, of this line or of the next, so a packet is full until its thread
+/// runs out of paths. Shading is the pool's: the kernels of core/, a register at a time.
 #pragma once
 
 #include <algorithm>
