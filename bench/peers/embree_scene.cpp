@@ -9,21 +9,26 @@ namespace raypool::peers {
 
 namespace {
 
-/// One shape of a block by itself, so that a test reads a line or two of the cache. A block is columns of numbers of
-/// four bytes, a lane each.
+/// A block is columns of numbers of four bytes, a lane each: so this takes one lane of each.
 template <class Alone, class Block>
 Alone shape_alone(const Block& block, int lane) {
-    static_assert(sizeof(block.id) == 4 * Block::kLanes);
-    constexpr std::size_t kColumns = std::min(sizeof(Alone) / 4, sizeof(Block) / (4 * Block::kLanes));
+    constexpr std::size_t kRow = 4 * Block::kLanes;
+    static_assert(sizeof(block.id) == kRow && sizeof(Alone::id) == 4);
     Alone alone{};
-    for (std::size_t column = 0; column < kColumns; ++column)
-        std::memcpy(
-            reinterpret_cast<char*>(&alone) + 4 * column,
-            reinterpret_cast<const char*>(&block) + 4 * (column * Block::kLanes + static_cast<std::size_t>(lane)), 4);
+    const auto* from = reinterpret_cast<const char*>(&block) + 4 * lane;
+    auto* to = reinterpret_cast<char*>(&alone);
+    for (std::size_t i = 0; i < std::min(sizeof(Alone) / 4, sizeof(Block) / kRow); ++i)
+        std::memcpy(to + 4 * i, from + kRow * i, 4);
     return alone;
 }
 
-/// The padded boxes of our own trees at times 0 and 1.
+template <class Block, class Blocks>
+void add(const Blocks& blocks, Shapes<Block>& shapes) {
+    for (const auto& block : blocks)
+        wavefront::for_each_shape(block, [&](int lane) { shapes.blocks.push_back(shape_alone<Block>(block, lane)); });
+}
+
+/// A shape's own padded box at times 0 and 1.
 detail::EndBounds<float> end_bounds(const SphereBlock<float, 1>& sphere, int axis) {
     return detail::end_bounds(sphere, axis);
 }
@@ -33,17 +38,23 @@ detail::EndBounds<float> end_bounds(const PlanarBlock<float, 1>& quad, int axis)
     return {{low, low}, {high, high}};
 }
 
-/// With the room that our trees leave for boxes that move (node_motion.h).
+template <class Block>
+float greatest_coordinate(const Shapes<Block>& shapes) {
+    float reach = 0;
+    for (const Block& shape : shapes.blocks)
+        for (int axis = 0; axis < 3; ++axis) reach = std::max(reach, end_bounds(shape, axis).reach());
+    return reach;
+}
+
 template <class Block>
 void set_bounds(const RTCBoundsFunctionArguments* args) {
-    const Block& shape = static_cast<const Block*>(args->geometryUserPtr)[args->primID];
+    const auto& shapes = *static_cast<const Shapes<Block>*>(args->geometryUserPtr);
     float low[3];
     float high[3];
     for (int axis = 0; axis < 3; ++axis) {
-        const detail::EndBounds<float> bounds = end_bounds(shape, axis);
-        const float room = 16 * std::numeric_limits<float>::epsilon() * bounds.reach();
-        low[axis] = bounds.low[args->timeStep] - room;
-        high[axis] = bounds.high[args->timeStep] + room;
+        const detail::EndBounds<float> bounds = end_bounds(shapes.blocks[args->primID], axis);
+        low[axis] = bounds.low[args->timeStep] - shapes.room;
+        high[axis] = bounds.high[args->timeStep] + shapes.room;
     }
     *args->bounds_o = {low[0], low[1], low[2], 0, high[0], high[1], high[2], 0};
 }
@@ -55,22 +66,27 @@ EmbreeScene::EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions
     if (!device_) throw std::runtime_error("Embree found no device");
     scene_.reset(rtcNewScene(device_.get()));
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
-    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-    attach(spheres_, scene.sphere_tree.blocks, scene.features.motion, functions.sphere);
-    attach(quads_, scene.quad_tree.blocks, false, functions.quad);
+    add(scene.sphere_tree.blocks, spheres_);
+    add(scene.quad_tree.blocks, quads_);
+    // Embree 3 has no robust box test for user geometries, whatever the flags of a scene. The one that it has takes
+    // products with the coordinates of a ray's origin, whose rounding is as if a box moved by an ulp of them; a box
+    // that moves has five more (node_motion.h). So boxes leave room for both, of whatever rays start on but planes and
+    // large spheres.
+    const float reach = std::max(
+        {scene.camera.origin.cwiseAbs().maxCoeff(), greatest_coordinate(spheres_), greatest_coordinate(quads_)});
+    spheres_.room = quads_.room = 8 * std::numeric_limits<float>::epsilon() * reach;
+    attach(spheres_, scene.features.motion, functions.sphere);
+    attach(quads_, false, functions.quad);
     rtcCommitScene(scene_.get());
     if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree refused the scene");
 }
 
-template <class Block, class Blocks>
-void EmbreeScene::attach(std::vector<Block>& shapes, const Blocks& blocks, bool can_move,
-                         RTCIntersectFunctionN intersect) {
-    for (const auto& block : blocks)
-        wavefront::for_each_shape(block, [&](int lane) { shapes.push_back(shape_alone<Block>(block, lane)); });
-    if (shapes.empty()) return;
+template <class Block>
+void EmbreeScene::attach(Shapes<Block>& shapes, bool can_move, RTCIntersectFunctionN intersect) {
+    if (shapes.blocks.empty()) return;
     const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(shapes.size()));
-    rtcSetGeometryUserData(geometry, shapes.data());
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(shapes.blocks.size()));
+    rtcSetGeometryUserData(geometry, &shapes);
     if (can_move) rtcSetGeometryTimeStepCount(geometry, 2);
     rtcSetGeometryBoundsFunction(geometry, set_bounds<Block>, nullptr);
     rtcSetGeometryIntersectFunction(geometry, intersect);

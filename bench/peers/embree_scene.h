@@ -41,6 +41,13 @@ struct Query {
     wavefront::WideRays<Real> rays;
 };
 
+/// Spheres or quads, each a block by itself, so that a test reads a line or two of the cache.
+template <class Block>
+struct Shapes {
+    std::vector<Block> blocks;
+    float room;  ///< that their boxes leave for Embree's rounding
+};
+
 /// What Embree calls for a shape, by its kind.
 struct ShapeFunctions {
     RTCIntersectFunctionN sphere;
@@ -63,7 +70,7 @@ struct ShapeFunctions {
             hit.t = select(as_mask<Real>(valid != Int<Real>(0)), t, Real(0));
         }
         const Mask<Real> is_closer = wavefront::intersect_lane<features, InBox::Yes, Real>(
-            static_cast<const Block*>(args->geometryUserPtr)[args->primID], 0,
+            static_cast<const Shapes<Block>*>(args->geometryUserPtr)->blocks[args->primID], 0,
             reinterpret_cast<const Query<Real>*>(args->context)->rays, hit);
         if (none(is_closer)) return;
         set(rayhit.ray.tfar, select(is_closer, hit.t, t));
@@ -103,24 +110,24 @@ class EmbreeScene {
     }
 
   private:
-    template <class Block, class Blocks>
-    void attach(std::vector<Block>& shapes, const Blocks& blocks, bool can_move, RTCIntersectFunctionN intersect);
+    template <class Block>
+    void attach(Shapes<Block>& shapes, bool can_move, RTCIntersectFunctionN intersect);
 
     template <auto release>
     struct Release {
         void operator()(auto handle) const { release(handle); }
     };
 
-    std::vector<SphereBlock<float, 1>> spheres_;
-    std::vector<PlanarBlock<float, 1>> quads_;
+    Shapes<SphereBlock<float, 1>> spheres_;
+    Shapes<PlanarBlock<float, 1>> quads_;
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release<rtcReleaseDevice>> device_;
     std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>> scene_;
 };
 
 /// The closest hit of one ray.
 template <Features features>
-RAYPOOL_INLINE Hit<float> closest_hit(const EmbreeScene& embree, const SceneView<float>& scene, const Ray<float>& ray,
-                                      std::int32_t leaving_id) {
+[[gnu::noinline]] Hit<float> closest_hit(const EmbreeScene& embree, const SceneView<float>& scene,
+                                         const Ray<float>& ray, std::int32_t leaving_id) {
     using Shapes = Wide<float, kTreeWidth<float>>;
     Query<float> query{{}, {ray, ray_inverse<float>(ray.direction), leaving_id}};
     const SpreadRay<Shapes> spread(ray, query.rays.inverse, leaving_id);

@@ -2,13 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
+#include <cmath>
+#include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "bench/peers/embree_engine.h"
 #include "bench/peers/embree_scene.h"
 #include "core/base/error.h"
+#include "core/image/cost_image.h"
 #include "core/scene/builtin_scenes.h"
 #include "recursive/tracer.h"
 #include "tests/equivalence/same_image.h"
@@ -122,16 +125,104 @@ HitCount count_hits(const Scene& described, std::int64_t spp) {
     return count;
 }
 
-TEST(EmbreeHits, Counted) {
-    for (const std::string& name : scene_names()) {
-        const HitCount count = count_hits(small_scene(name, 200), 16);
-        fmt::print("{}: {} of {} hits differ\n", name, count.differing, count.all);
+/// Small spheres, still or in motion, or squares turned at random, strewn in a cube of edge 20, seen from `distance`.
+Scene strewn(int spheres, int quads, double motion, double distance) {
+    std::mt19937_64 random(3);
+    const auto number = [&] { return static_cast<double>(random() >> 11U) * 0x1p-52 - 1; };  // in [-1, 1)
+    const auto vector = [&] { return Vector3d(number(), number(), number()); };
+    Scene scene;
+    scene.width = scene.height = 150;
+    scene.camera.look_from = distance * Vector3d(0.3, 0.2, 1);
+    scene.camera.look_at = Vector3d::Zero();
+    scene.camera.vertical_fov_degrees = std::max(0.001, 2 * std::atan(10 / distance) * 180 / std::numbers::pi);
+    scene.camera.shutter_close = motion > 0 ? 1 : 0;
+    scene.background = {Vector3d::Ones(), Vector3d::Ones()};
+    scene.textures.emplace_back().even = Vector3d::Constant(0.8);
+    scene.materials.emplace_back();
+    for (int i = 0; i < spheres; ++i) {
+        const Vector3d center = 10 * vector();
+        scene.spheres.push_back({center, center + motion * vector(), 0.15, 0});
     }
-    for (const char* file : {"/tmp/gen_s10k.json", "/tmp/gen_q10k.json", "/tmp/gen_m10k.json", "/tmp/gen_s100k.json"}) {
-        Scene scene = read_scene(file);
-        scene.height = scene.height * 200 / scene.width; scene.width = 200;
-        const HitCount count = count_hits(scene, 8);
-        fmt::print("{}: {} of {} hits differ\n", file, count.differing, count.all);
+    for (int i = 0; i < quads; ++i) {
+        const Vector3d u = vector().normalized();
+        const Vector3d v = u.cross(vector()).normalized();
+        scene.quads.push_back({10 * vector(), 0.3 * u, 0.3 * v, 0});
+    }
+    return scene;
+}
+
+TEST(EmbreeHits, AreOursInEveryBuiltInScene) {
+    for (const std::string& name : scene_names()) {
+        const HitCount count = count_hits(small_scene(name, 100), 8);
+        EXPECT_EQ(count.differing, 0) << name << ", of " << count.all;
+    }
+}
+
+TEST(EmbreeHits, AreOursFromNearAndFar) {
+    for (const double distance : {20.0, 2e3, 2e5}) {
+        for (const Scene& scene : {strewn(5000, 0, 0, distance), strewn(5000, 0, 1.5, distance),
+                                   strewn(0, 5000, 0, distance), strewn(2500, 2500, 1.5, distance)}) {
+            const HitCount count = count_hits(scene, 8);
+            EXPECT_EQ(count.differing, 0) << "from " << distance << ", of " << count.all;
+        }
+    }
+}
+
+TEST(EmbreeEngine, MakesTheImageOfStrewnShapes) {
+    expect_same("strewn", compile<float>(strewn(2500, 2500, 0, 30)), settings_of(4));
+    expect_same("strewn_in_motion", compile<float>(strewn(2500, 2500, 1.5, 30)), settings_of(4));
+    expect_same("nothing", compile<float>(strewn(0, 0, 0, 30)), settings_of(1));
+}
+
+TEST(EmbreeEngine, MakesTheImageOfChosenPixelsAndInUnits) {
+    const CompiledScene<float> scene = compile<float>(small_scene("paper", 40));
+    const std::vector<std::uint32_t> pixels{0, 3, 4, 41, 200, 399, 719};
+    RenderSettings settings = settings_of(5);
+    settings.pixels = &pixels;
+    settings.threads = 2;
+    expect_same("chosen_pixels", scene, settings);
+
+    const Rendered expected = render(recursive::IterativeEngine(), scene, settings_of(5));
+    for (const Engine* engine : kEngines) {
+        const Rendered got = rendered_by(scene, settings_of(5), [&](Framebuffer& framebuffer) {
+            const auto session = engine->begin(scene, settings_of(5), framebuffer);
+            session->add({0, 2, nullptr});
+            session->add({2, 5, nullptr});
+            return session->finish();
+        });
+        EXPECT_TRUE(same_image("embree_units", expected, got, engine->name()));
+    }
+}
+
+TEST(EmbreeEngine, MakesTheSumsOfSquares) {
+    const CompiledScene<float> scene = compile<float>(small_scene("paper", 40));
+    const RenderSettings settings = settings_of(6);
+    const auto hash = [&](const Engine& engine) {
+        Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(6, scene.max_radiance), Moments::Second);
+        engine.render(scene, settings, framebuffer);
+        return framebuffer.hash();
+    };
+    for (const Engine* engine : kEngines)
+        EXPECT_EQ(hash(*engine), hash(recursive::IterativeEngine())) << engine->name();
+}
+
+TEST(EmbreeEngine, RefusesWhatItHasNot) {
+    const Scene described = small_scene("paper", 8);
+    const CompiledScene<float> scene = compile<float>(described);
+    const CompiledScene<double> in_double = compile<double>(described);
+    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(1, scene.max_radiance));
+    CostImage cost(Cost::Segments, scene.width, scene.height);
+    RenderSettings splitting;
+    splitting.split_depth = 1;
+    RenderSettings counting;
+    counting.count_work = true;
+    RenderSettings with_cost;
+    with_cost.cost_image = &cost;
+    for (const Engine* engine : kEngines) {
+        EXPECT_THROW((void)engine->begin(scene, splitting, framebuffer), InputError);
+        EXPECT_THROW((void)engine->begin(scene, counting, framebuffer), InputError);
+        EXPECT_THROW((void)engine->begin(scene, with_cost, framebuffer), InputError);
+        EXPECT_THROW((void)engine->begin(in_double, {}, framebuffer), InputError);
     }
 }
 

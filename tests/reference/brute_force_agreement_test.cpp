@@ -53,8 +53,9 @@ std::vector<Figures> by_engine(const Engine& engine, const Scene& scene) {
         settings.depth = kDepth;
         settings.seed = static_cast<std::uint64_t>(batch);
         const Rendered rendered = render(engine, compiled, settings);
-        batches.push_back(figures(scene, rendered.image().rgb, static_cast<double>(rendered.report.segments()) /
-                                                                   static_cast<double>(rendered.report.paths())));
+        batches.push_back(
+            figures(scene, rendered.image().rgb,
+                    static_cast<double>(rendered.report.segments()) / static_cast<double>(rendered.report.paths())));
     }
     return batches;
 }

@@ -71,8 +71,8 @@ class Tracer {
             const Vec v = vec(q.edge_v);
             const Vec n = cross(u, v);
             const double square = dot(n, n);  // of the area: what makes the coordinates run from 0 to 1
-            flats_.push_back({vec(q.corner), unit(n), 1 / square * cross(v, n), 1 / square * cross(n, u), true,
-                              q.material_id});
+            flats_.push_back(
+                {vec(q.corner), unit(n), 1 / square * cross(v, n), 1 / square * cross(n, u), true, q.material_id});
         }
         for (const Plane& p : scene.planes) {
             const Vec n = unit(vec(p.normal));
@@ -116,8 +116,8 @@ class Tracer {
             const Hit hit = closest(origin, direction, time);
             if (hit.t == kFar) return throughput * sky(direction);
             origin = origin + hit.t * direction;
-            const Vec outward = hit.flat != nullptr ? hit.flat->normal
-                                                    : 1 / hit.ball->radius * (origin - center(*hit.ball, time));
+            const Vec outward =
+                hit.flat != nullptr ? hit.flat->normal : 1 / hit.ball->radius * (origin - center(*hit.ball, time));
             const bool is_front = dot(direction, outward) < 0;
             const Vec normal = is_front ? outward : -1 * outward;
             const int id = hit.flat != nullptr ? hit.flat->material_id : hit.ball->material_id;
@@ -184,8 +184,8 @@ class Tracer {
         return (1 - up) * vec(scene_.background.bottom) + up * vec(scene_.background.top);
     }
 
-    /// By Fresnel's equations for unpolarised light (Born and Wolf, "Principles of Optics", 1.5.2); `eta` is the index of
-    /// refraction on this side over that beyond.
+    /// By Fresnel's equations for unpolarised light (Born and Wolf, "Principles of Optics", 1.5.2); `eta` is the index
+    /// of refraction on this side over that beyond.
     Vec glass(Vec direction, Vec mirrored, Vec normal, double eta) {
         const double cos_in = -dot(direction, normal);
         const double sin2_out = eta * eta * (1 - cos_in * cos_in);
@@ -218,10 +218,9 @@ class Tracer {
             const Vec at = 1 / texture.scale * (p + 1e-9 * outward + vec(texture.offset));
             return vec(is_odd_cell(at.x, at.y, at.z) ? texture.odd : texture.even);
         }
-        const auto [u, v] = flat != nullptr
-                                ? coordinates(*flat, p)
-                                : Coordinates{0.5 + std::atan2(-outward.z, outward.x) / (2 * kPi),
-                                              0.5 + std::asin(std::clamp(outward.y, -1.0, 1.0)) / kPi};
+        const auto [u, v] = flat != nullptr ? coordinates(*flat, p)
+                                            : Coordinates{0.5 + std::atan2(-outward.z, outward.x) / (2 * kPi),
+                                                          0.5 + std::asin(std::clamp(outward.y, -1.0, 1.0)) / kPi};
         if (texture.kind == Texture::Kind::CheckerUv)
             return vec(is_odd_cell(u / texture.scale, v / texture.scale, 0) ? texture.odd : texture.even);
         const bool repeats = texture.wrap == Texture::Wrap::Repeat ||

@@ -1,9 +1,9 @@
 /// A path tracer that shares nothing with the engines but the scene's description: the measure of their physics.
 ///
 /// Called by brute_force_agreement_test.cpp. All is in double, every ray asks every shape, and the random numbers are
-/// those of the standard library, so no mistake can hide here and in an engine alike. Written from docs/scene-format.md,
-/// with a least distance in place of care about rounding: it is for scenes whose coordinates are below some thousands and
-/// whose surfaces do not coincide.
+/// those of the standard library, so no mistake can hide here and in an engine alike. Written from
+/// docs/scene-format.md, with a least distance in place of care about rounding: it is for scenes whose coordinates are
+/// below some thousands and whose surfaces do not coincide.
 #pragma once
 
 #include <cstdint>
