@@ -81,6 +81,10 @@ struct Simplification {
     double noise = 1;        ///< squared error of a sample, over that of the unchanged
 };
 
+struct Interval {
+    double low = 0, high = 0;
+};
+
 /// A configuration with the samples that meet the target.
 struct Offer {
     Pilot pilot;

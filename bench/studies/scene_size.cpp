@@ -8,7 +8,6 @@
 #include "bench/studies/cache_counts.h"
 #include "bench/studies/generated_scene.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/scene_size_summary.h"
 #include "bench/studies/studies.h"
 #include "core/scene/scene_reader.h"
 #include "core/runtime/settings_text.h"
@@ -20,6 +19,13 @@ namespace raypool::studies {
 namespace {
 
 using wavefront::PoolSettings;
+
+// Ways that are no number of records.
+constexpr const char* kRecursion = "recursion";
+constexpr const char* kAutomatic = "automatic";
+// Before the name of a way, and a comma: what was counted of it.
+constexpr const char* kCounted = "cache misses";
+constexpr const char* kLists = "lists";
 
 /// A generated scene that is made when it is first rendered: a study is planned more often than it is run.
 class SizedScene {
@@ -241,10 +247,6 @@ class SceneSize : public Study {
             }
         }
         return cases;
-    }
-
-    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions&) const override {
-        return summarise_scene_size(data);
     }
 
   private:
