@@ -1,7 +1,7 @@
 // How radiance reaches the framebuffer.
 //   accumulate/...   every kind of accumulator, where threads have pixels of their own and where all add to the same
-//   few framebuffer/...  the contributions of a real render, to sums that lie side by side (r, g, b, r, g, b, ...) or in
-//   three
+//   few framebuffer/...  the contributions of a real render, to sums that lie side by side (r, g, b, r, g, b, ...) or
+//   in three
 //                    planes, in the order of the pixels and in the order in which a shared pool ends its paths
 
 #include <algorithm>
@@ -78,7 +78,7 @@ std::vector<std::vector<Contributions<float>>> contributions_of_threads(Pixels p
         std::vector<Contribution> contributions(kContributions);
         for (Contribution& contribution : contributions)
             contribution = {first + static_cast<std::uint32_t>(random() % part),
-                       vec3<float>(unit(random), unit(random), unit(random))};
+                            vec3<float>(unit(random), unit(random), unit(random))};
         all.push_back(batches(contributions));
     }
     return all;
@@ -135,7 +135,8 @@ void accumulate(benchmark::State& state, const Kind& kind, Pixels pixels) {
 class Recorder : public AnyAccumulator {
   public:
     void add(const Contributions<float>& contributions, SampleConverter&, int) override {
-        for (std::size_t i = 0; i < contributions.count(); ++i) all_.push_back({contributions.pixel(i), contributions.radiance(i)});
+        for (std::size_t i = 0; i < contributions.count(); ++i)
+            all_.push_back({contributions.pixel(i), contributions.radiance(i)});
     }
     std::vector<Contribution>& all() { return all_; }
 

@@ -67,8 +67,8 @@ inline bool agree(benchmark::State& state, bool is_same, const char* what_differ
     return is_same;
 }
 
-/// The counters of a row: rays (or contributions) that an iteration treats, and the bytes that hold one of them in what the
-/// row works on.
+/// The counters of a row: rays (or contributions) that an iteration treats, and the bytes that hold one of them in what
+/// the row works on.
 inline void count_rays(benchmark::State& state, std::int64_t rays, double bytes) {
     state.counters["rays/s"] =
         benchmark::Counter(static_cast<double>(rays), benchmark::Counter::kIsIterationInvariantRate);

@@ -31,7 +31,11 @@ class StageRig {
         : pool_(pool),
           framebuffer_(paper_scene().width, paper_scene().height, roomy()),
           accumulator_(wavefront::make_accumulator<float>(pool.accumulator, framebuffer_, 1)),
-          context_{paper_scene(), settings_, pool_, random_seed(settings_.seed, settings_.sampler), framebuffer_.fixed_point(),
+          context_{paper_scene(),
+                   settings_,
+                   pool_,
+                   random_seed(settings_.seed, settings_.sampler),
+                   framebuffer_.fixed_point(),
                    accumulator_.get()},
           stages_(context_, most_records, 0) {}
     StageRig(const StageRig&) = delete;

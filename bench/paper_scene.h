@@ -1,9 +1,9 @@
 /// The scene that the benchmarks work on, `paper`, and the number types that the engines compile for it.
 #pragma once
 
-#include "core/shading/compiled_scene.h"
 #include "core/base/error.h"
 #include "core/scene/scene_reader.h"
+#include "core/shading/compiled_scene.h"
 
 namespace raypool {
 
@@ -14,7 +14,8 @@ using Lanes = Wide<float, stdx::native_simd<float>::size()>;
 inline const CompiledScene<float>& paper_scene() {
     static const CompiledScene<float> scene = [] {
         CompiledScene<float> compiled = compile<float>(builtin_scene("paper"));
-        RAYPOOL_CHECK(kCompiledFeatures[compiled_features_index(compiled.features)] == kPaper, "the engines run other code");
+        RAYPOOL_CHECK(kCompiledFeatures[compiled_features_index(compiled.features)] == kPaper,
+                      "the engines run other code");
         return compiled;
     }();
     return scene;

@@ -2,12 +2,12 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "bench/studies/draw.h"
+#include "bench/studies/analysis.h"
 #include "bench/studies/registry.h"
-#include "bench/studies/reproduce.h"
 #include "bench/studies/runner.h"
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -23,6 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kReproduce = "reproduce";
+/// They repeat the paper together, in the order of its page.
+const std::vector<std::string> kPaperStudies{"load", "schedules", "scaling", "pool", "framebuffer"};
 
 struct StudyCommand {
     std::string name;
@@ -55,7 +57,7 @@ int run(const studies::Study& study, const fs::path& folder, StudyCommand& comma
               progress.paths.load());
         return 128 + StopSignals::received();
     }
-    studies::draw_pictures(folder);
+    studies::analyse(folder);
     if (!command.is_quiet) print("{}\n", (folder / "summary.md").string());
     return 0;
 }
@@ -73,11 +75,11 @@ int study(StudyCommand& command) {
     if (command.options.threads > 0) thread_count(command.options.threads);
     const fs::path folder = command.output.empty() ? fs::path("out") / command.name : fs::path(command.output);
     if (command.name != kReproduce) return run(*studies::make_study(command.name), folder, command);
-    for (const std::string& name : studies::paper_studies()) {
+    for (const std::string& name : kPaperStudies) {
         const int status = run(*studies::make_study(name), folder / name, command);
         if (status != 0) return status;
     }
-    studies::write_reproduction(folder);
+    studies::write_reproduction(folder, kPaperStudies);
     if (!command.is_quiet) print("{}\n", (folder / "summary.md").string());
     return 0;
 }

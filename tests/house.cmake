@@ -10,6 +10,12 @@ set_tests_properties(documentation PROPERTIES LABELS slow COST 100  # begun firs
 add_test(NAME layers COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/layers_test.py ${PROJECT_SOURCE_DIR})
 set_tests_properties(layers PROPERTIES LABELS unit)
 
+foreach(name crossover efficiency page results scene_size)
+  add_test(NAME analysis_${name}
+           COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/analysis/${name}_test.py ${PROJECT_SOURCE_DIR})
+  set_tests_properties(analysis_${name} PROPERTIES LABELS unit)
+endforeach()
+
 if(RAYPOOL_SANITIZE MATCHES thread)
   # Without Archer, ThreadSanitizer takes the barriers of OpenMP for races. libomp loads it by itself where it finds it.
   add_test(NAME archer COMMAND equivalence_test --gtest_filter=*HashMatrix*two_pixels*)

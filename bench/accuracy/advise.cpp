@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "core/scene/features.h"
 #include "core/film/rare_events.h"
 #include "core/runtime/settings_text.h"
+#include "core/scene/features.h"
 
 namespace raypool::accuracy {
 

@@ -6,8 +6,8 @@
 /// advice. An error is the root mean square over channels and pixels against the converged image.
 ///
 /// What is promised holds for light that no pilot has found too: a variance, and what a limit of depth cuts off, count
-/// with their upper confidence limits (core/film/rare_events.h), which know how bright the scene's brightest light is. Where
-/// pilots of a bounded time find too little light for that, nothing is promised.
+/// with their upper confidence limits (core/film/rare_events.h), which know how bright the scene's brightest light is.
+/// Where pilots of a bounded time find too little light for that, nothing is promised.
 ///
 /// Noise falls with the root of the samples; of Sobol points with the slope that was measured. Bias is taken from pairs
 /// of images that share random numbers. Only float and a limit of depth have any: Sobol points, roulette and split
@@ -79,6 +79,10 @@ struct Simplification {
     double unseen_bias = 0;  ///< Pilot's
     double time = 1;         ///< of a sample, over that of the unchanged
     double noise = 1;        ///< squared error of a sample, over that of the unchanged
+};
+
+struct Interval {
+    double low = 0, high = 0;
 };
 
 /// A configuration with the samples that meet the target.

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "bench/accuracy/statistics.h"
-#include "core/shading/compiled_scene.h"
 #include "core/runtime/engine.h"
 #include "core/scene/scene.h"
+#include "core/shading/compiled_scene.h"
 
 namespace raypool::accuracy {
 

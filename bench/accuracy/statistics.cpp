@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
-#include <random>
 
 #include "core/base/error.h"
 
@@ -24,11 +22,6 @@ Values sum_of(const std::vector<Values>& images) {
     for (const Values& image : images)
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += image[i];
     return sum;
-}
-
-double median_of(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
 }
 
 }  // namespace
@@ -100,65 +93,6 @@ std::vector<double> variances(const std::vector<Values>& images) {
         found.push_back(squares / static_cast<double>(sum.size()) * (n - 1) / n);
     }
     return found;
-}
-
-Interval bootstrap(std::size_t count, const std::function<double(std::span<const std::size_t>)>& statistic,
-                   std::uint64_t seed, double confidence) {
-    constexpr std::size_t kResamples = 2000;
-    std::mt19937_64 random(seed);
-    std::vector<std::size_t> indices(count);
-    std::vector<double> outcomes(kResamples);
-    for (double& outcome : outcomes) {
-        for (std::size_t& index : indices) index = random() % count;
-        outcome = statistic(indices);
-    }
-    std::sort(outcomes.begin(), outcomes.end());
-    const double tail = 0.5 * (1 - confidence) * static_cast<double>(kResamples - 1);
-    const auto low = static_cast<std::size_t>(std::floor(tail));
-    return {outcomes[low], outcomes[kResamples - 1 - low]};
-}
-
-double efficiency(const Runs& runs, std::span<const std::size_t> indices) {
-    std::vector<double> seconds;
-    double mse = 0;
-    for (const std::size_t i : indices) {
-        seconds.push_back(runs.seconds[i]);
-        mse += runs.mse[i] / static_cast<double>(indices.size());
-    }
-    return mse > 0 ? 1 / (mse * median_of(std::move(seconds))) : std::numeric_limits<double>::infinity();
-}
-
-Comparison compare_efficiency(const Runs& a, const Runs& b, std::uint64_t seed) {
-    const std::size_t count = std::min(a.mse.size(), b.mse.size());
-    RAYPOOL_CHECK(count > 0, "there are runs to compare");
-    const auto ratio = [&](std::span<const std::size_t> indices) {
-        const double first = efficiency(a, indices);
-        const double second = efficiency(b, indices);
-        return first == second ? 1 : first / second;  // two infinities do not differ
-    };
-    std::vector<std::size_t> all(count);
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    Comparison found{ratio(all), bootstrap(count, ratio, seed), Winner::NoDifference};
-    if (count >= kLeastSeeds && found.interval.excludes(1))
-        found.winner = found.interval.low > 1 ? Winner::First : Winner::Second;
-    return found;
-}
-
-std::vector<std::size_t> pareto_front(std::span<const Point> points) {
-    std::vector<std::size_t> order(points.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
-        return points[i].seconds != points[j].seconds ? points[i].seconds < points[j].seconds
-                                                      : points[i].error < points[j].error;
-    });
-    std::vector<std::size_t> front;
-    double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t i : order) {
-        if (!(points[i].error < least)) continue;
-        least = points[i].error;
-        front.push_back(i);
-    }
-    return front;
 }
 
 double log_log_slope(std::span<const double> x, std::span<const double> y) {

@@ -1,12 +1,11 @@
 /// Statistics of error against time: pure functions over numbers, known to tests by data whose truth is known.
 ///
 /// Called by the study of speed and accuracy and by `raypool advise`. Errors are of linear radiance; an image is its
-/// channel means in row order. Nothing here draws random numbers other than by the seed it is given.
+/// channel means in row order.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -46,43 +45,6 @@ Estimate mean_squared_expectation(const std::vector<Values>& samples);
 /// Mean over pixels of the variance of at least two independent images of one expectation: for each of them its
 /// squared distance from the mean of the others, times (n - 1) / n, so that each by itself is free of bias.
 std::vector<double> variances(const std::vector<Values>& images);
-
-struct Interval {
-    double low = 0, high = 0;
-    [[nodiscard]] bool excludes(double value) const { return value < low || value > high; }
-};
-
-/// Percentile bootstrap: `statistic` of 2000 resamples of the indices 0 to count - 1 with replacement; the interval
-/// holds `confidence` of the outcomes. Figures that were measured side by side are resampled together by taking the
-/// same indices of each. The same seed gives the same interval. count >= 1.
-Interval bootstrap(std::size_t count, const std::function<double(std::span<const std::size_t>)>& statistic,
-                   std::uint64_t seed, double confidence = 0.95);
-
-/// What one configuration took and missed, seed by seed.
-struct Runs {
-    std::vector<double> seconds;
-    std::vector<double> mse;
-};
-/// 1 / (MSE s) of those runs: mean error, since it is an expectation; median time, since machines have outliers. An
-/// error of zero or below, which only the correction for noise can make, counts as infinitely efficient.
-double efficiency(const Runs& runs, std::span<const std::size_t> indices);
-
-enum class Winner : std::uint8_t { First, Second, NoDifference };
-struct Comparison {
-    double ratio = 0;  ///< efficiency of the first over that of the second
-    Interval interval;
-    Winner winner = Winner::NoDifference;  ///< where the interval excludes 1, and there are kLeastSeeds
-};
-/// Fewer seeds than this decide nothing.
-inline constexpr std::size_t kLeastSeeds = 5;
-/// Run i of both had the same seed and stood side by side.
-Comparison compare_efficiency(const Runs& a, const Runs& b, std::uint64_t seed);
-
-struct Point {
-    double seconds = 0, error = 0;
-};
-/// Indices of the points that no other point beats in both, by rising time. Of equal points the first stands.
-std::vector<std::size_t> pareto_front(std::span<const Point> points);
 
 /// Slope of the least-squares line through (log x, log y); all values above zero, at least two different x.
 double log_log_slope(std::span<const double> x, std::span<const double> y);

@@ -1,8 +1,8 @@
 /// Ray against sphere as books and code bases have it, and as the cases of stability show it to fail.
 ///
-/// Only bench/ and tests/ call this; the method of the engines is sphere_distance() (core/geometry/shapes.h). Templates over any
-/// Real, as the kernels. `least` is the distance below which a hit does not count: the epsilon that is to keep a ray
-/// from meeting the surface it leaves.
+/// Only bench/ and tests/ call this; the method of the engines is sphere_distance() (core/geometry/shapes.h). Templates
+/// over any Real, as the kernels. `least` is the distance below which a hit does not count: the epsilon that is to keep
+/// a ray from meeting the surface it leaves.
 #pragma once
 
 #include <bit>

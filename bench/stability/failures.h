@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/runtime/engine.h"
 #include "core/image/image.h"
+#include "core/runtime/engine.h"
 #include "core/scene/scene.h"
 
 namespace raypool::stability {
@@ -24,10 +24,8 @@ RenderReport render_naively(NaiveVariant variant, const CompiledScene<float>& sc
                             Framebuffer& framebuffer);
 
 struct Failure {
-    std::string id;  ///< the picture's name
+    std::string id;  ///< the picture's name; scripts/analysis/stability.py says what to see
     std::string row;
-    std::string title;
-    std::string caption;
     NaiveVariant variant;
     Scene scene;
 };

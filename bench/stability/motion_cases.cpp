@@ -52,8 +52,8 @@ double end_error(double before_end, std::int64_t times) {
     return errors.max();
 }
 
-/// Moving spheres that reach out of the box that is kept for them: of the box between the boxes of both ends, or of one of
-/// ours, over the whole shutter and at the time.
+/// Moving spheres that reach out of the box that is kept for them: of the box between the boxes of both ends, or of one
+/// of ours, over the whole shutter and at the time.
 template <class Scalar>
 std::vector<PaddedSphere<Scalar>> moving_spheres(RandomInputs& random, double translation, std::int64_t count) {
     std::vector<Sphere> spheres(static_cast<std::size_t>(std::max<std::int64_t>(count / 20, 200)));

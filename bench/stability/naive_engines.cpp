@@ -11,8 +11,8 @@ namespace raypool {
 template <>
 struct SphereMethod<1> {
     template <class Real>
-    RAYPOOL_INLINE static Real distance(const Vec3<Real>& origin, const Vec3<Real>& direction,
-                                               const Vec3<Real>& center, const Real& radius, const Mask<Real>&) {
+    RAYPOOL_INLINE static Real distance(const Vec3<Real>& origin, const Vec3<Real>& direction, const Vec3<Real>& center,
+                                        const Real& radius, const Mask<Real>&) {
         return naive::haines_distance<Real>(origin, direction, center, radius, Real(naive::kBookEpsilon));
     }
 };
@@ -20,9 +20,8 @@ struct SphereMethod<1> {
 template <>
 struct SphereMethod<2> {
     template <class Real>
-    RAYPOOL_INLINE static Real distance(const Vec3<Real>& origin, const Vec3<Real>& direction,
-                                               const Vec3<Real>& center, const Real& radius,
-                                               const Mask<Real>& is_leaving) {
+    RAYPOOL_INLINE static Real distance(const Vec3<Real>& origin, const Vec3<Real>& direction, const Vec3<Real>& center,
+                                        const Real& radius, const Mask<Real>& is_leaving) {
         const Real first = naive::half_b_distance<Real>(origin, direction, center, radius, Real(0));
         const Real second = raypool::sphere_distance<Real>(origin, direction, center, radius, is_leaving);
         return select(is_leaving, second, first);
@@ -50,7 +49,7 @@ namespace {
 /// Quads, glass and checkers in space. All members are written out: bench/studies/feature_engines.h says why.
 template <NaiveVariant variant>
 constexpr Features kFeatures{false, false, true, false, false,
-                            true,  false, true, false, static_cast<std::uint8_t>(variant)};
+                             true,  false, true, false, static_cast<std::uint8_t>(variant)};
 
 template <NaiveVariant variant>
 RenderReport render(const CompiledScene<float>& scene, const RenderSettings& settings, Framebuffer& framebuffer) {

@@ -6,9 +6,9 @@
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
 #include "bench/stability/stack.h"
-#include "core/runtime/engine.h"
 #include "core/film/framebuffer.h"
 #include "core/math/random.h"
+#include "core/runtime/engine.h"
 #include "core/shading/shade.h"
 
 namespace raypool::stability {

@@ -109,10 +109,11 @@ double seam(double distance, std::int64_t rays) {
                 for (std::size_t id = 0; id < 2; ++id) {
                     const auto part = [](const Scalar* from) { return vec3<Scalar>(from[0], from[1], from[2]); };
                     const Scalar* planar = compiled.planars[id].value;
-                    is_met = is_met || naive::strict_quad_distance<Scalar>(
-                                           ray.origin, ray.direction, part(planar + Planar::kCorner),
-                                           part(compiled.surfaces[id].value + SurfaceRow<Scalar>::kCenter),
-                                           part(planar + Planar::kDualU), part(planar + Planar::kDualV)) < kInfinity<Scalar>;
+                    is_met =
+                        is_met || naive::strict_quad_distance<Scalar>(
+                                      ray.origin, ray.direction, part(planar + Planar::kCorner),
+                                      part(compiled.surfaces[id].value + SurfaceRow<Scalar>::kCenter),
+                                      part(planar + Planar::kDualU), part(planar + Planar::kDualV)) < kInfinity<Scalar>;
                 }
             }
             passed += is_met ? 0 : 1;

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "core/shading/shade.h"
 #include "core/geometry/shapes.h"
+#include "core/shading/shade.h"
 #include "tests/core/geometry/aimed_ray.h"
 #include "tests/core/geometry/exact_sphere.h"
 #include "tests/errors.h"

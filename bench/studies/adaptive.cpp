@@ -5,18 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 
 #include <fmt/format.h>
 
 #include "bench/accuracy/reference.h"
-#include "bench/studies/adaptive_summary.h"
+#include "bench/studies/pass_log.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/replay_ways.h"
 #include "bench/studies/runner.h"
 #include "bench/studies/studies.h"
-#include "core/runtime/adaptive.h"
 #include "core/base/error.h"
+#include "core/runtime/adaptive.h"
 #include "core/scene/scene_reader.h"
 #include "recursive/engine.h"
 #include "wavefront/engine.h"
@@ -89,55 +88,6 @@ Made make_adaptive(const Engine& engine, const CompiledScene<float>& scene, Rend
     return made;
 }
 
-/// An engine that keeps what threads did in each unit of its renders.
-class PassLog : public Engine {
-  public:
-    explicit PassLog(const Engine& engine) : engine_(engine) {}
-    [[nodiscard]] std::string name() const override { return engine_.name(); }
-    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene,
-                                                       const RenderSettings& settings,
-                                                       Framebuffer& framebuffer) const override {
-        return std::make_unique<Session>(passes_, engine_.begin(scene, settings, framebuffer));
-    }
-    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<double>& scene,
-                                                       const RenderSettings& settings,
-                                                       Framebuffer& framebuffer) const override {
-        return std::make_unique<Session>(passes_, engine_.begin(scene, settings, framebuffer));
-    }
-
-    /// Segments that passes take when their slowest threads are waited for, over the segments that there are for a
-    /// thread: 1 is perfect balance.
-    [[nodiscard]] double load() const {
-        double longest = 0, fair = 0;
-        for (const RenderReport& pass : passes_) {
-            std::int64_t most = 0;
-            for (const ThreadReport& thread : pass.threads) most = std::max(most, thread.segments);
-            longest += static_cast<double>(most);
-            fair += static_cast<double>(pass.segments()) / static_cast<double>(pass.threads.size());
-        }
-        return longest / fair;
-    }
-
-  private:
-    class Session : public RenderSession {
-      public:
-        Session(std::vector<RenderReport>& passes, std::unique_ptr<RenderSession> session)
-            : passes_(passes), session_(std::move(session)) {
-            report_ = session_->report();
-        }
-
-      private:
-        RenderReport render(const RenderUnit& unit) override { return passes_.emplace_back(session_->add(unit)); }
-        RenderReport collect() override { return session_->merge(); }
-
-        std::vector<RenderReport>& passes_;
-        std::unique_ptr<RenderSession> session_;
-    };
-
-    const Engine& engine_;
-    mutable std::vector<RenderReport> passes_;
-};
-
 /// Ways to share out the pixels of a pass. Static ones fix beforehand who does what, so that they can be counted with
 /// any number of threads; pools whose threads take lines as they ask for them run on the cores that there are.
 struct Sharing {
@@ -208,9 +158,6 @@ class Adaptive : public Study {
         for (int turn = 0; turn < plan.seeds; ++turn)
             for (const auto& make : by_seed) cases.push_back(make(plan.first_seed + static_cast<std::uint64_t>(turn)));
         return cases;
-    }
-    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions&) const override {
-        return summarise_adaptive(data);
     }
 
   private:

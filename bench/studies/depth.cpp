@@ -5,13 +5,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "bench/studies/renders.h"
-#include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
 #include "bench/studies/truncation.h"
-#include "bench/studies/verdict.h"
 #include "core/base/error.h"
 #include "core/scene/scene_reader.h"
 
@@ -137,12 +134,6 @@ Case timed_case(const char* kind, const NamedEngine& engine, const std::shared_p
             repeats, run};
 }
 
-std::string percent(double share) {
-    return share == 0     ? "0"
-           : share < 1e-4 ? fmt::format("{:.1e} %", 100 * share)
-                          : fmt::format("{:.3g} %", 100 * share);
-}
-
 class Depth : public Study {
   public:
     [[nodiscard]] std::string name() const override { return "depth"; }
@@ -207,176 +198,6 @@ class Depth : public Study {
             for (const NamedEngine& engine : engines)
                 cases.push_back(timed_case(kDeep, engine, corridor, settings, depth, std::min(repeats, 3)));
         return cases;
-    }
-
-    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions& options) const override {
-        Summary summary;
-        for (const Value& scene : data.where("kind", kSurvival).distinct("scene"))
-            add_survival(summary, data.where("kind", kSurvival).where("scene", scene), scene.get<std::string>(),
-                         options.scene);
-        add_times(summary, data.where("kind", kTime), "Nanoseconds of a thread for a segment");
-        add_speed(summary, data.where("kind", kTime));
-        add_times(summary, data.where("kind", kDeep), "The same of very deep paths between two mirrors");
-        add_limits(summary, data.where("kind", kDeep));
-        summary.pictures.push_back(
-            {"depth_error", "What a limit of depth cuts off",
-             "Left: the part of the paths that a limit cuts. Right: the part of the light that is missing for it, "
-             "exact "
-             "for the paths rendered, since both images are made of the same. Dotted: the paper's depths. What to see: "
-             "how deep is enough is up to the scene. " +
-                 missing_at_five(data.where("kind", kSurvival)) + "A white furnace loses exactly its paths."});
-        summary.pictures.push_back(
-            {"depth_time", "Cost of a segment by depth",
-             "Thread time, median with the lowest and highest run. Left: the scene of the paper, from camera rays only "
-             "to the end of all paths. Right: only 16 paths, between two mirrors, followed without end. What to see: "
-             "on the left, how little the limit changes the cost of a segment, and which engine is the cheapest. On "
-             "the right, what barriers cost a shared pool of 16 paths; a cross is a depth that recursion refuses, "
-             "since its stack cannot hold it."});
-        return summary;
-    }
-
-  private:
-    /// "At depth 5 a fifth is missing": in figures, for the caption.
-    static std::string missing_at_five(const Table& survival) {
-        std::vector<std::string> parts;
-        for (const Value& scene : survival.distinct("scene"))
-            for (const double lost : survival.where("scene", scene).where("depth", 5).numbers("lost_light"))
-                parts.push_back(fmt::format("{} {}", scene.get<std::string>(), percent(lost)));
-        return parts.empty() ? "" : fmt::format("Light missing at depth 5: {}. ", fmt::join(parts, ", "));
-    }
-
-    static void add_survival(Summary& summary, const Table& rows, const std::string& scene, const std::string& main) {
-        const std::vector<double> depth = rows.numbers("depth");
-        const std::vector<double> alive = rows.numbers("alive");
-        const std::vector<double> lost = rows.numbers("lost_light");
-        const std::vector<double> rmse = rows.numbers("lost_rmse");
-        const std::vector<double> paired = rows.numbers("paired_rmse");
-        const double noise = rows.numbers("noise_rmse").at(0);
-        TextTable table{fmt::format("{}: cut off by the depth (noise of {} spp: RMSE {:.2e})", scene, kNoiseSpp, noise),
-                        {"depth", "paths that would go on", "light cut off", "RMSE of that", "RMSE, image to image"},
-                        {}};
-        for (std::size_t i = 0; i < depth.size(); ++i)
-            table.rows.push_back({fmt::format("{}", depth[i]), percent(alive[i]), percent(lost[i]),
-                                  fmt::format("{:.2e}", rmse[i]), fmt::format("{:.2e}", paired[i])});
-        summary.tables.push_back(std::move(table));
-
-        if (scene == kFurnace) {
-            // Every path would bring exactly 1, and at the reference all have come home but those still alive there.
-            double worst = 0;
-            for (std::size_t i = 0; i < depth.size(); ++i)
-                worst = std::max(worst, std::abs((alive[i] - alive.back()) / (1 - alive.back()) - lost[i]));
-            summary.findings.push_back(
-                {"", "a white furnace loses exactly the share of paths that the limit cuts", "",
-                 fmt::format("at depth {}: {} of the paths, {} of the light; largest difference at any depth {:.1e}",
-                             depth[0], percent(alive[0]), percent(lost[0]), worst),
-                 worst < 1e-9 ? Verdict::Holds : Verdict::DoesNotHold, ""});
-        }
-        if (scene != main) return;
-        std::size_t enough = depth.size();
-        while (enough > 0 && rmse[enough - 1] < noise) --enough;
-        const std::size_t last = depth.size() < 2 ? 0 : depth.size() - 2;  // the last is the reference itself
-        summary.findings.push_back(
-            {"",
-             fmt::format("{}: the light cut off at a depth of {} is below the noise of {} samples", scene, depth[last],
-                         kNoiseSpp),
-             "",
-             enough == depth.size()
-                 ? fmt::format("above it at every depth; noise RMSE {:.2e}", noise)
-                 : fmt::format("below it from depth {} on (RMSE {:.2e}, {} of the light; noise {:.2e})", depth[enough],
-                               rmse[enough], percent(lost[enough]), noise),
-             rmse[last] < noise ? Verdict::Holds : Verdict::DoesNotHold, ""});
-    }
-
-    static void add_times(Summary& summary, const Table& rows, const std::string& title) {
-        const std::vector<Value> engines = rows.distinct("engine");
-        TextTable table{title, {"depth", "segments a path"}, {}};
-        for (const Value& engine : engines) table.header.push_back(engine.get<std::string>());
-        for (const Value& depth : rows.distinct("depth")) {
-            const Table at = rows.where("depth", depth);
-            const std::vector<double> segments = at.numbers("segments");
-            std::vector<std::string> row{
-                fmt::format("{}", depth.get<std::int64_t>()),
-                segments.empty() ? "" : fmt::format("{:.2f}", segments[0] / at.numbers("paths").at(0))};
-            for (const Value& engine : engines) {
-                const std::vector<double> ns = at.where("engine", engine).numbers("ns_per_segment");
-                row.push_back(ns.empty() ? kRefused : to_text(spread(ns), 1));
-            }
-            table.rows.push_back(std::move(row));
-        }
-        summary.tables.push_back(std::move(table));
-    }
-
-    /// Is the pool ahead of recursion at every depth?
-    static void add_speed(Summary& summary, const Table& rows) {
-        std::vector<std::string> ours;
-        bool is_ahead = true;
-        bool is_behind = false;
-        for (const Value& depth : rows.distinct("depth")) {
-            const auto seconds = [&](const char* engine) {
-                return rows.where("depth", depth).where("engine", engine).numbers("seconds");
-            };
-            const std::vector<double> ratio = ratios(seconds("recursive"), seconds("pool"));
-            if (ratio.empty()) continue;
-            is_ahead &= is_at_least(spread(ratio), 1) == Verdict::Holds;
-            is_behind |= is_at_least(spread(ratio), 1) == Verdict::DoesNotHold;
-            ours.push_back(fmt::format("{}: {}", depth.get<std::int64_t>(), to_text(spread(ratio))));
-        }
-        summary.findings.push_back({"", "the fused pool is faster than recursion at every depth", "",
-                                    ours.empty() ? "" : fmt::format("depth {}", fmt::join(ours, "; ")),
-                                    ours.empty() ? Verdict::CannotTell
-                                    : is_ahead   ? Verdict::Holds
-                                    : is_behind  ? Verdict::DoesNotHold
-                                                 : Verdict::CannotTell,
-                                    ours.empty()            ? "recursion was refused"
-                                    : is_ahead || is_behind ? ""
-                                                            : "too few runs, or their spread includes 1"});
-    }
-
-    static void add_limits(Summary& summary, const Table& rows) {
-        const std::vector<double> depths = rows.numbers("depth");
-        const double deepest = *std::max_element(depths.begin(), depths.end());
-
-        // Memory: what pools asked for, which follows from their capacity.
-        std::vector<std::string> bytes;
-        for (const char* engine : {"shared pool", "pool"}) {
-            const Spread pool = spread(rows.where("engine", engine).numbers("pool_bytes"));
-            bytes.push_back(fmt::format("{}: {:.2f} to {:.2f} MB", engine, pool.low * 1e-6, pool.high * 1e-6));
-        }
-        summary.notes.push_back(
-            fmt::format("Memory that pools asked for, up to depth {}: {}.", deepest, fmt::join(bytes, "; ")));
-
-        // Stack.
-        const Table refused = rows.where("outcome", kRefused);
-        const bool is_recursion_only = refused.where("engine", "recursive").rows().size() == refused.rows().size();
-        const std::vector<double> recursed =
-            rows.where("engine", "recursive").where("outcome", kRendered).numbers("depth");
-        std::string ours =
-            recursed.empty() ? "it rendered none of the depths"
-                             : fmt::format("it rendered depth {}", *std::max_element(recursed.begin(), recursed.end()));
-        if (!refused.is_empty()) {
-            const std::vector<double> depths = refused.numbers("depth");
-            ours += fmt::format(" and refused depth {}", *std::min_element(depths.begin(), depths.end()));
-            summary.notes.push_back(fmt::format("What recursion says: \"{}\"",
-                                                refused.rows()[0][refused.index("refusal")].get<std::string>()));
-        }
-        summary.findings.push_back({"", "recursion refuses what its stack cannot hold; the others go on", "", ours,
-                                    refused.is_empty()  ? Verdict::CannotTell
-                                    : is_recursion_only ? Verdict::Holds
-                                                        : Verdict::DoesNotHold,
-                                    refused.is_empty() ? "the stack here holds every depth that was tried" : ""});
-
-        // Time.
-        const auto ns = [&](const char* engine) {
-            return rows.where("depth", deepest).where("engine", engine).numbers("ns_per_segment");
-        };
-        const Spread cost = spread(ratios(ns("pool"), ns("iterative")));
-        summary.findings.push_back({"", "a segment of a few endless paths costs the fused pool less than the loop", "",
-                                    fmt::format("{} times the loop's at depth {}; the shared pool's {}", to_text(cost),
-                                                deepest, to_text(spread(ratios(ns("shared pool"), ns("iterative"))))),
-                                    cost.high < 1  ? Verdict::Holds
-                                    : cost.low > 1 ? Verdict::DoesNotHold
-                                                   : Verdict::CannotTell,
-                                    cost.low <= 1 && cost.high >= 1 ? "the spread of the runs includes 1" : ""});
     }
 };
 

@@ -12,7 +12,7 @@ struct FusedPool {
                                                 Framebuffer& framebuffer) {
         using Real = wavefront::WideReal<float>;
         return wavefront::begin<features, Real, NoTestCount, Splitting::Off>(scene, settings, wavefront::PoolSettings{},
-                                                                          framebuffer);
+                                                                             framebuffer);
     }
 };
 

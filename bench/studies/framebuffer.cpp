@@ -1,5 +1,7 @@
 // Sums of a pixel side by side, or in three planes: the paper's Figure 11, in time and in cache misses.
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <optional>
 #include <string_view>
@@ -7,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "bench/studies/cache_counts.h"
-#include "bench/studies/framebuffer_summary.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/studies.h"
 #include "core/runtime/settings_text.h"
@@ -21,6 +22,9 @@ namespace {
 using wavefront::Accumulator;
 using wavefront::PoolSettings;
 
+constexpr const char* kInterleaved = "interleaved";
+constexpr const char* kPlanar = "planar";
+
 /// A pool whose accumulator has both layouts.
 struct Pair {
     const char* name;
@@ -29,7 +33,7 @@ struct Pair {
 };
 std::vector<Pair> pairs() {
     return {{"a pool for each thread", rung_settings("beam", 1), Accumulator::OwnedPlanarInt64},
-            {kSharedPool, rung_settings("shared-stream", 1), Accumulator::AtomicPlanarInt64}};
+            {"the paper's pool, shared", rung_settings("shared-stream", 1), Accumulator::AtomicPlanarInt64}};
 }
 PoolSettings in_layout(const Pair& pair, const char* layout) {
     PoolSettings pool = pair.pool;
@@ -214,8 +218,11 @@ class FramebufferLayout : public Study {
         return cases;
     }
 
-    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions&) const override {
-        return summarise_framebuffer(data);
+    [[nodiscard]] nlohmann::json facts() const override {
+        return {{"second_level_cache_bytes", sysconf(_SC_LEVEL2_CACHE_SIZE)},
+                {"why_nothing_is_simulated", has_hardware_counters() ? "" : cachegrind_command().why},
+                {"simulated_first_level", kSimulatedD1},
+                {"simulated_last_level", kSimulatedLl}};
     }
 
   private:

@@ -27,8 +27,8 @@ fs::path generator() {
 GeneratedScene::GeneratedScene(const std::string& kind, std::int64_t shapes)
     : name_(fmt::format("{} {}", shapes, kind)),
       path_(fs::temp_directory_path() / fmt::format("raypool-{}-{}-{}.json", getpid(), shapes, kind)) {
-    if (run_process({"/usr/bin/python3", "-B", generator().string(), std::to_string(shapes), kind, "-o", path_.string()}) ==
-        0)
+    if (run_process(
+            {"/usr/bin/python3", "-B", generator().string(), std::to_string(shapes), kind, "-o", path_.string()}) == 0)
         return;
     std::error_code ignored;
     fs::remove(path_, ignored);

@@ -1,14 +1,11 @@
 // Work of each thread under every way of sharing it out: the paper's Figure 5, from counted work, and the same of
 // pools.
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "bench/studies/renders.h"
 #include "bench/studies/replay_ways.h"
 #include "bench/studies/runner.h"
-#include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
@@ -33,9 +30,6 @@ constexpr Way kWays[] = {
     {"pixels, static,1 (collapse)", "pixel", "static,1"},
     {"pixels, dynamic", "pixel", "dynamic"},
 };
-constexpr const char* kBasic = kWays[0].name;
-constexpr const char* kStatic1 = kWays[1].name;
-constexpr const char* kCollapse = kWays[6].name;
 constexpr const char* kShares = "one of all paths, equal shares";
 
 class Load : public Study {
@@ -99,8 +93,6 @@ class Load : public Study {
         cases.push_back({"replayed", "", 1, [=, this] { return replay_ways(*scene, settings, replayed); }});
         return cases;
     }
-
-    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions& options) const override;
 
   private:
     std::vector<Row> count(const std::string& group, const std::string& way, const Engine& engine,
@@ -169,76 +161,6 @@ class Load : public Study {
         return rows;
     }
 };
-
-/// The first run of a way; counts are the same in all.
-Table first_run(const Table& data, const Value& way) {
-    return data.where("way", way).where("repeat", 0);
-}
-
-Summary Load::summarise(const Table& data, const StudyOptions&) const {
-    Summary summary;
-    const int threads = static_cast<int>(data.numbers("threads").at(0));
-    TextTable table{fmt::format("Load of {} threads", threads),
-                    {"way", "source", "tests: max/mean", "tests: CV", "rays: max/mean", "rays: CV", "busy: max/mean"},
-                    {}};
-    std::vector<Value> ways = data.where("group", "recursion").distinct("way");
-    const std::vector<Value> pools = data.where("group", "pool").distinct("way");
-    ways.insert(ways.end(), pools.begin(), pools.end());
-    for (const Value& way : ways) {
-        const Table run = first_run(data, way);
-        const std::vector<double> tests = run.numbers("tests");
-        const std::vector<double> rays = run.numbers("segments");
-        const std::vector<double> busy = run.numbers("busy_s");
-        table.rows.push_back(
-            {way.get<std::string>(), run.distinct("source").at(0).get<std::string>(),
-             fmt::format("{:.3f}", max_over_mean(tests)), fmt::format("{:.3f}", coefficient_of_variation(tests)),
-             fmt::format("{:.3f}", max_over_mean(rays)), fmt::format("{:.3f}", coefficient_of_variation(rays)),
-             busy.empty() ? "" : fmt::format("{:.3f}", max_over_mean(busy))});
-    }
-    summary.tables.push_back(table);
-
-    const auto load = [&](const char* way, const char* unit) {
-        return max_over_mean(first_run(data, way).numbers(unit));
-    };
-    const double basic = load(kBasic, "tests");
-    const double static1 = load(kStatic1, "tests");
-    const double collapse = load(kCollapse, "tests");
-    summary.findings.push_back(
-        {"Figure 5", "the default schedule of lines is the worst balanced, static,1 better, pixel by pixel the best",
-         "histograms of 8 threads, width 800",
-         fmt::format("max/mean of tests {:.3f}, {:.3f} and {:.3f}, {} threads", basic, static1, collapse, threads),
-         threads == 1                            ? Verdict::CannotTell
-         : basic > static1 && static1 > collapse ? Verdict::Holds
-                                                 : Verdict::DoesNotHold,
-         threads == 1 ? "one thread has nothing to share out" : ""});
-    const double rays = load(kShares, "segments");
-    const double tests = load(kShares, "tests");
-    summary.findings.push_back(
-        {"", "a pool that shares out its rays evenly shares out its work evenly", "",
-         fmt::format("equal shares of every round: max/mean of rays {:.3f}, of tests {:.3f}, {} threads", rays, tests,
-                     threads),
-         threads == 1    ? Verdict::CannotTell
-         : tests <= 1.02 ? Verdict::Holds
-                         : Verdict::DoesNotHold,
-         threads == 1 ? "one thread has nothing to share out" : ""});
-
-    summary.pictures.push_back(
-        {"load", fmt::format("Work of each of {} threads", threads),
-         "Each bar is a thread's box and primitive tests, each white dot the rays that it traced, both over the mean "
-         "(the line at 1). The number is max/mean of tests: 1 is perfect balance, and all threads wait for the tallest "
-         "bar. What to see: which ways leave tall bars; and, in the last panel, that a pool whose dots are on the line "
-         "may have its bars far from it: equal rays are not equal work."});
-    summary.notes.push_back(
-        "Static schedules, and every pool, are counted in a real run. Loops that hand out work as threads ask for it "
-        "are counted too where there are enough cores, and replayed from the recorded costs of all paths where there "
-        "are not. Pools count the tests that their streams and packets make, replays those of single rays.");
-    summary.notes.push_back(
-        "Pools: lines, or batches of the shared pools, in turn (static,1) where nothing else is said. What a thread of "
-        "a "
-        "shared pool traces depends on who fetches camera rays first, so its counts differ a little from run to run; "
-        "and sums over rounds do not show what threads wait for each other within a round: the replay study does.");
-    return summary;
-}
 
 }  // namespace
 

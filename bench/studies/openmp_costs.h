@@ -7,8 +7,8 @@
 
 namespace raypool::studies {
 
-/// Processor time that a thread spends on fetching one chunk of a dynamic loop of short chunks: what the loop takes more
-/// than a static one. The counter then comes from another core's cache; in an empty loop one core would keep it.
+/// Processor time that a thread spends on fetching one chunk of a dynamic loop of short chunks: what the loop takes
+/// more than a static one. The counter then comes from another core's cache; in an empty loop one core would keep it.
 double chunk_fetch_seconds(int threads);
 
 /// Seconds from the last thread's coming to a barrier until all go on.

@@ -74,7 +74,7 @@ std::vector<double> time_lines(const CompiledScene<float>& scene, const RenderSe
 }
 std::vector<double> time_lines(const StudyScene& scene, const RenderSettings& settings, std::int64_t step) {
     return dispatch_features(scene.compiled.features,
-                          [&]<Features features>() { return time_lines<features>(scene.compiled, settings, step); });
+                             [&]<Features features>() { return time_lines<features>(scene.compiled, settings, step); });
 }
 
 /// Least squares through the origin in two variables. Where lines are too few or too noisy for two, in one.

@@ -1,8 +1,8 @@
 /// What every segment of every path costs, recorded once, for studies that replay schedules.
 ///
-/// A cost is counted: the boxes and the primitives that one ray is tested against (core/geometry/traverse.h), which is work of
-/// the per-pixel engines exactly, and of the pools, whose streams and packets test otherwise, in proportion. A model
-/// turns tests into seconds of the recursive engine.
+/// A cost is counted: the boxes and the primitives that one ray is tested against (core/geometry/traverse.h), which is
+/// work of the per-pixel engines exactly, and of the pools, whose streams and packets test otherwise, in proportion. A
+/// model turns tests into seconds of the recursive engine.
 #pragma once
 
 #include <cstdint>

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/studies/pool_summary.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/studies.h"
 #include "core/runtime/settings_text.h"
@@ -22,6 +21,8 @@ using wavefront::PoolSettings;
 using wavefront::Refill;
 using wavefront::Sort;
 
+constexpr const char* kPaperPool = "the paper's pool";
+
 /// A pool whose capacity is left open: a line of the picture.
 struct Line {
     std::string name;
@@ -33,12 +34,12 @@ std::vector<Line> lines() {
     std::vector<Line> lines;
     PoolSettings wide = rung_settings("shared-stream", 1);
     lines.push_back({kPaperPool, rung_settings("shared", 1)});
-    lines.push_back({kWidePool, wide});
+    lines.push_back({"shared, drain", wide});
     wide.refill = Refill::Regenerate;
     lines.push_back({"shared, regenerate", wide});
     lines.push_back({"thread, drain", rung_settings("thread-small", 1)});
     lines.push_back({"thread, regenerate", rung_settings("regenerate", 1)});
-    lines.push_back({kFastestPool, rung_settings("beam", 1)});
+    lines.push_back({"thread, regenerate, beam", rung_settings("beam", 1)});
     return lines;
 }
 
@@ -174,10 +175,6 @@ class Pool : public Study {
         }
         add_rounds(cases, scene, settings);
         return cases;
-    }
-
-    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions&) const override {
-        return summarise_pool(data);
     }
 
   private:

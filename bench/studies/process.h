@@ -1,4 +1,4 @@
-/// Other programs that a study calls: python for its pictures, valgrind for its counts.
+/// Other programs that a study calls: python for what its rows say, valgrind for its counts.
 #pragma once
 
 #include <string>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -11,7 +10,6 @@
 
 #include "bench/studies/path_costs.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
 #include "cluster/work_units.h"
 
@@ -26,7 +24,6 @@ constexpr double kLook = 50e-6;        ///< until rank 0 sees a question, s (clu
 constexpr double kServe = 2e-6;        ///< of a question, to the thread that answers, s
 constexpr double kPixelBytes = 3 * 8;  ///< of a reduction
 constexpr double kSlowSpeed = 0.25;    ///< of one rank, where one is slow
-constexpr double kGoodEfficiency = 0.9;
 constexpr int kMostRanks = 10000;
 
 /// Seconds of any unit: the recorded samples again and again.
@@ -168,72 +165,12 @@ class RankStudy : public Study {
         return cases;
     }
 
-    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions& /*options*/) const override {
-        Summary summary;
-        TextTable falls{
-            "How far each render scales", {"samples a pixel", "most ranks at 0.9", "work of each there"}, {}};
-        TextTable losses{fmt::format("What a render on {} ranks spends, in milliseconds", kMostRanks),
-                         {"samples a pixel", "equal share", "last units", "questions", "reduction", "efficiency",
-                          "with one slow rank"},
-                         {}};
-        for (const Value& spp : data.distinct("spp")) {
-            const Table rows = data.where("spp", spp);
-            const std::vector<double> ranks = rows.numbers("ranks"), ideal = rows.numbers("ideal_s"),
-                                      efficiency = rows.numbers("efficiency");
-            const std::size_t first_bad = static_cast<std::size_t>(
-                std::find_if(efficiency.begin(), efficiency.end(), [](double e) { return e < kGoodEfficiency; }) -
-                efficiency.begin());
-            if (first_bad > 0)
-                falls.rows.push_back({spp.dump(), fmt::format("{}", ranks[first_bad - 1]),
-                                      fmt::format("{:.3g} s", ideal[first_bad - 1])});
-            const Table last = rows.where("ranks", kMostRanks);
-            std::vector<std::string> row{spp.dump()};
-            for (const char* part : {"ideal_s", "last_units_s", "questions_s", "reduction_s"})
-                row.push_back(fmt::format("{:.1f}", 1e3 * last.numbers(part).front()));
-            for (const char* part : {"efficiency", "slow_efficiency"})
-                row.push_back(fmt::format("{:.3f}", last.numbers(part).front()));
-            losses.rows.push_back(std::move(row));
-        }
-        summary.tables = {falls, losses};
-        summary.findings.push_back(scaling_finding(data));
-        summary.pictures.push_back(
-            {"ranks", "Efficiency against ranks",
-             "Each line is a render of so many samples a pixel, simulated: costs of paths are recorded, the network is "
-             "supposed. What to see: a line falls where an equal share of the work comes near what is lost, which is "
-             "the "
-             "others' last units and the reduction for few ranks, and, for thousands, rank 0's answers, one at a "
-             "time."});
-        summary.notes.push_back(fmt::format(
-            "Supposed: {:.0f} GB/s and {:.0f} us a message, {:.0f} us until a question is seen, {:.0f} us to answer "
-            "it, a "
-            "reduction of {} bytes a pixel over a binary tree, one step after the other. Left out: reading the scene, "
-            "starting the ranks, what a rank sets up once for all its units, and everything that makes equal "
-            "processors unequal.",
-            kBytesPerSecond * 1e-9, kLatency * 1e6, kLook * 1e6, kServe * 1e6, kPixelBytes));
-        return summary;
-    }
-
-  private:
-    static Finding scaling_finding(const Table& data) {
-        const std::vector<double> ideal = data.numbers("ideal_s"), efficiency = data.numbers("efficiency");
-        double worst = 1;
-        bool is_any = false;
-        for (std::size_t i = 0; i < ideal.size(); ++i)
-            if (ideal[i] >= 2) {
-                worst = std::min(worst, efficiency[i]);
-                is_any = true;
-            }
-        Finding finding{"",
-                        "where every rank has two seconds of work or more, 0.9 of its time is work",
-                        "",
-                        fmt::format("{:.3f} at least", worst),
-                        worst >= kGoodEfficiency ? Verdict::Holds : Verdict::DoesNotHold,
-                        ""};
-        if (!is_any) {
-            finding.verdict = Verdict::CannotTell;
-            finding.why = "no render was large enough";
-        }
-        return finding;
+    [[nodiscard]] nlohmann::json facts() const override {
+        return {{"bytes_per_second", kBytesPerSecond},
+                {"latency_s", kLatency},
+                {"look_s", kLook},
+                {"serve_s", kServe},
+                {"pixel_bytes", kPixelBytes}};
     }
 };
 

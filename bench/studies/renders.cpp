@@ -9,8 +9,8 @@
 
 #include "bench/studies/statistics.h"
 #include "core/base/error.h"
-#include "core/scene/scene_reader.h"
 #include "core/runtime/settings_text.h"
+#include "core/scene/scene_reader.h"
 #include "recursive/engine.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bench/studies/study.h"
-#include "core/shading/compiled_scene.h"
 #include "core/runtime/engine.h"
+#include "core/shading/compiled_scene.h"
 #include "wavefront/settings.h"
 
 namespace raypool::studies {

@@ -7,7 +7,6 @@
 
 #include "bench/studies/openmp_costs.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/replay_summary.h"
 #include "bench/studies/replay_ways.h"
 #include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
@@ -19,6 +18,8 @@ namespace raypool::studies {
 namespace {
 
 constexpr int kMostThreads = 4096;
+constexpr const char* kDefaultPool = "a pool each, balanced (default)";
+constexpr const char* kThreadPools = "a pool for each thread";  ///< a group of ways
 
 /// What a run of the recursive engine can be held against.
 struct RealWay {
@@ -173,10 +174,6 @@ class ReplayStudy : public Study {
         settings.schedule = LoopSchedule{};
         add_real(fused_pool(), default_pool_way());
         return cases;
-    }
-
-    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions&) const override {
-        return summarise_replay(data);
     }
 
   private:

@@ -4,8 +4,8 @@
 #include <memory>
 #include <numeric>
 
-#include "core/runtime/balanced_items.h"
 #include "core/base/error.h"
+#include "core/runtime/balanced_items.h"
 #include "wavefront/settings.h"
 
 namespace raypool::studies {

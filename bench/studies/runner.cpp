@@ -4,18 +4,15 @@
 #include <ctime>
 #include <fstream>
 #include <numeric>
-#include <span>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include "bench/studies/report.h"
 #include "bench/studies/run_data.h"
-#include "core/runtime/environment.h"
 #include "core/base/error.h"
 #include "core/base/json_file.h"
-#include "core/base/output_file.h"
 #include "core/base/text.h"
+#include "core/runtime/environment.h"
 
 namespace raypool::studies {
 
@@ -40,10 +37,6 @@ CpuTime cpu_time() {
     CpuTime time;
     for (int i = 0; i < 8 && file >> time.stolen; ++i) time.all += time.stolen;  // the eighth is what was stolen
     return time;
-}
-
-void write_text(const fs::path& path, const std::string& text) {
-    write_whole(path, std::as_bytes(std::span(text)));
 }
 
 /// What fixes the meaning of every row: a run is resumed only where all of this is the same.
@@ -124,17 +117,17 @@ bool run_study(const Study& study, const StudyOptions& options, const fs::path& 
         const json found = read_run(folder);
         for (const char* key : {"study", "question", "options", "plan", "columns"}) check_same(found, run, key, folder);
         data.load();
-        // A complete run is only summarised anew, by whatever build: its figures keep the origin that they have.
+        // A complete run is only analysed anew, by whatever build: its figures keep the origin that they have.
         if (data.run_count() == run_count(study, options) && found.contains("environment"))
             run["environment"] = found["environment"];
         check_same(found, run, "environment", folder);
-        for (const char* key : {"started", "finished", "stolen"})
+        for (const char* key : {"started", "finished", "stolen", "facts"})
             if (found.contains(key)) run[key] = found[key];
     }
     data.open();  // before run.json says that what is in it belongs to this run
     std::error_code ignored;
     if (control.is_fresh) fs::remove(folder / "summary.md", ignored);
-    const bool was_complete = data.run_count() == run_count(study, options);
+    const bool was_complete = data.run_count() == run_count(study, options) && run.contains("finished");
     if (!was_complete) {
         run["started"].push_back(now());
         write_json(folder / "run.json", run);
@@ -155,16 +148,13 @@ bool run_study(const Study& study, const StudyOptions& options, const fs::path& 
         }
     }
 
-    // What came out.
     if (!was_complete) {
         const CpuTime after = cpu_time();
         run["finished"] = now();
         run["stolen"] = (after.stolen - before.stolen) / std::max(1.0, after.all - before.all);
     }
-    const Summary summary = study.summarise(data.table(), options);
-    add_summary(run, summary);
+    if (!run.contains("facts")) run["facts"] = study.facts();
     study.write_images(folder, options);
-    write_text(folder / "summary.md", summary_page(run));
     write_json(folder / "run.json", run);
     return true;
 }

@@ -1,9 +1,9 @@
 /// Runs a study: repeats interleaved over cases, images checked, every finished run kept.
 ///
 /// A study's folder holds data.csv (a row or more for each repeat of each case, appended as soon as it is known),
-/// run.json (what was asked, of which build, on which machine, and what came out), summary.md and the pictures. A run
-/// that was interrupted goes on where it stopped, provided that study, options, build and machine are the same. One
-/// that is complete is summarised anew, also by another build, and keeps the build and machine that its figures are of.
+/// run.json (what was asked, of which build, on which machine), and then what analysis.h makes of them. A run that was
+/// interrupted goes on where it stopped, provided that study, options, build and machine are the same. One that is
+/// complete measures nothing again, also by another build, and keeps the build and machine that its figures are of.
 #pragma once
 
 #include <atomic>
@@ -12,8 +12,8 @@
 
 #include "bench/studies/run_data.h"
 #include "bench/studies/study.h"
-#include "core/runtime/engine.h"
 #include "core/base/file_lock.h"
+#include "core/runtime/engine.h"
 
 namespace raypool::studies {
 
@@ -31,11 +31,11 @@ std::vector<std::size_t> turn_order(std::size_t count, std::size_t turn);
 std::int64_t run_count(const Study& study, const StudyOptions& options);
 
 /// Makes the folder, and keeps other processes from running a study in it while the lock lives: whoever calls
-/// run_study() and draws pictures holds one. Throws InputError where another process is at work there.
+/// run_study() and analyse() holds one. Throws InputError where another process is at work there.
 [[nodiscard]] FileLock lock_folder(const std::filesystem::path& folder);
 
-/// Returns false when it was stopped before the end. Writes no pictures (draw.h). Throws InputError when the folder
-/// holds another run or cannot be written to, and WrongImage.
+/// Returns false when it was stopped before the end. Leaves rows and run.json, for analysis.h. Throws InputError when
+/// the folder holds another run or cannot be written to, and WrongImage.
 bool run_study(const Study& study, const StudyOptions& options, const std::filesystem::path& folder,
                const RunControl& control);
 

@@ -8,10 +8,9 @@
 #include "bench/studies/cache_counts.h"
 #include "bench/studies/generated_scene.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/scene_size_summary.h"
 #include "bench/studies/studies.h"
-#include "core/scene/scene_reader.h"
 #include "core/runtime/settings_text.h"
+#include "core/scene/scene_reader.h"
 #include "wavefront/capacity.h"
 #include "wavefront/engine.h"
 
@@ -20,6 +19,13 @@ namespace raypool::studies {
 namespace {
 
 using wavefront::PoolSettings;
+
+// Ways that are no number of records.
+constexpr const char* kRecursion = "recursion";
+constexpr const char* kAutomatic = "automatic";
+// Before the name of a way, and a comma: what was counted of it.
+constexpr const char* kCounted = "cache misses";
+constexpr const char* kLists = "lists";
 
 /// A generated scene that is made when it is first rendered: a study is planned more often than it is run.
 class SizedScene {
@@ -59,8 +65,8 @@ NamedEngine sized_engine(const SizedWay& way) {
     return {"pool", std::make_shared<wavefront::WavefrontEngine>(*way.pool)};
 }
 
-/// What a row of counts says beside its render, all of it null where it was not counted: reads that missed the first-level
-/// and the last-level cache; lists of one level of the trees.
+/// What a row of counts says beside its render, all of it null where it was not counted: reads that missed the
+/// first-level and the last-level cache; lists of one level of the trees.
 struct Counted {
     Value source = nullptr;
     Value d1_read_misses = nullptr;
@@ -132,9 +138,12 @@ Case cachegrind_case(const SizedWay& way, const std::shared_ptr<SizedScene>& sce
         const StudyScene& made = scene->get();
         const GeneratedScene file(scene->kind(), scene->shapes());
         const auto count = [&](std::int64_t spp) {
-            std::vector<std::string> arguments{file.path().string(), fmt::format("--width={}", made.compiled.width),
-                                               fmt::format("--spp={}", spp), fmt::format("--depth={}", settings.depth),
-                                               fmt::format("--seed={}", settings.seed), "--threads=1"};
+            std::vector<std::string> arguments{file.path().string(),
+                                               fmt::format("--width={}", made.compiled.width),
+                                               fmt::format("--spp={}", spp),
+                                               fmt::format("--depth={}", settings.depth),
+                                               fmt::format("--seed={}", settings.seed),
+                                               "--threads=1"};
             arguments.emplace_back(way.pool ? "--engine=wavefront" : "--engine=recursive");
             if (way.pool && way.pool->capacity > 0)
                 arguments.push_back(fmt::format("--pool-rays={}", way.pool->capacity));
@@ -182,24 +191,24 @@ class SceneSize : public Study {
     }
     [[nodiscard]] std::vector<Column> columns() const override {
         std::vector<Column> columns = render_columns();
-        columns.insert(columns.end(),
-                       {{"kind", ColumnType::Text, "what scenes/generate strewed: spheres, quads or a cluster"},
-                        {"shapes", ColumnType::Count, "how many"},
-                        {"depth", ColumnType::Count, "most segments of a path; 1: camera rays alone"},
-                        {"way", ColumnType::Text,
-                         "recursion, a capacity, automatic; cache misses or lists of one of these"},
-                        {"capacity", ColumnType::Count, "records of the pool of each thread"},
-                        {"tree_bytes", ColumnType::Count, "nodes and leaves of the scene's trees"},
-                        {"segments", ColumnType::Count, "rays traced"},
-                        {"ns_per_segment", ColumnType::Real, "nanoseconds of a thread for a segment"},
-                        {"source", ColumnType::Text, "of misses: hardware counters, or cachegrind (a simulation)"},
-                        {"d1_read_misses", ColumnType::Count, "of the first-level cache, by all segments"},
-                        {"ll_read_misses", ColumnType::Count, "of the last-level cache; cachegrind's is the second level"},
-                        {"level", ColumnType::Count, "of the trees, the root's is 0"},
-                        {"lists", ColumnType::Count, "lists of rays at nodes and leaves of the level"},
-                        {"list_rays", ColumnType::Count, "rays in them"},
-                        {"single_rays", ColumnType::Count, "of these, in short lists: each went on alone, in no list"},
-                        {"lanes", ColumnType::Count, "of registers, for the other rays"}});
+        columns.insert(
+            columns.end(),
+            {{"kind", ColumnType::Text, "what scenes/generate strewed: spheres, quads or a cluster"},
+             {"shapes", ColumnType::Count, "how many"},
+             {"depth", ColumnType::Count, "most segments of a path; 1: camera rays alone"},
+             {"way", ColumnType::Text, "recursion, a capacity, automatic; cache misses or lists of one of these"},
+             {"capacity", ColumnType::Count, "records of the pool of each thread"},
+             {"tree_bytes", ColumnType::Count, "nodes and leaves of the scene's trees"},
+             {"segments", ColumnType::Count, "rays traced"},
+             {"ns_per_segment", ColumnType::Real, "nanoseconds of a thread for a segment"},
+             {"source", ColumnType::Text, "of misses: hardware counters, or cachegrind (a simulation)"},
+             {"d1_read_misses", ColumnType::Count, "of the first-level cache, by all segments"},
+             {"ll_read_misses", ColumnType::Count, "of the last-level cache; cachegrind's is the second level"},
+             {"level", ColumnType::Count, "of the trees, the root's is 0"},
+             {"lists", ColumnType::Count, "lists of rays at nodes and leaves of the level"},
+             {"list_rays", ColumnType::Count, "rays in them"},
+             {"single_rays", ColumnType::Count, "of these, in short lists: each went on alone, in no list"},
+             {"lanes", ColumnType::Count, "of registers, for the other rays"}});
         return columns;
     }
 
@@ -241,10 +250,6 @@ class SceneSize : public Study {
             }
         }
         return cases;
-    }
-
-    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions&) const override {
-        return summarise_scene_size(data);
     }
 
   private:

@@ -1,34 +1,40 @@
 // Error against time: every configuration on the same scenes with the same seeds, held against a trusted reference.
 
-#include "bench/studies/speed_accuracy.h"
-
 #include <algorithm>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "bench/accuracy/configuration.h"
 #include "bench/accuracy/reference.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/runner.h"
 #include "bench/studies/studies.h"
-#include "core/scene/scene_reader.h"
 #include "core/runtime/settings_text.h"
+#include "core/scene/scene_reader.h"
 
 namespace raypool::studies {
 
-namespace speed_accuracy {
+namespace {
 
 using accuracy::Configuration;
 using accuracy::EngineKind;
 using accuracy::Precision;
 
+// Kinds of rows.
+constexpr const char* kReference = "reference";
+constexpr const char* kBias = "bias";
+constexpr const char* kRun = "run";
+
+/// The fast pool in float: what the others are held against. depth 0: the usual one.
 Configuration base_configuration(std::int64_t depth) {
     Configuration base;
     if (depth != 0) base.depth = static_cast<std::int32_t>(depth);
     return base;
 }
 
+/// The base, what differs from it in one thing, and the combinations that are worth a look.
 std::vector<Configuration> configurations(std::int64_t depth, bool has_glass) {
     const Configuration base = base_configuration(depth);
     std::vector<Configuration> all{base};
@@ -58,8 +64,6 @@ std::vector<Configuration> configurations(std::int64_t depth, bool has_glass) {
     add(sobol, roulette, split);
     return all;
 }
-
-namespace {
 
 using SharedScene = std::shared_ptr<const accuracy::SceneInBoth>;
 
@@ -178,8 +182,6 @@ Case timed_case(const SharedScene& scene, const std::shared_ptr<accuracy::Refere
             1, run};
 }
 
-}  // namespace
-
 class SpeedAccuracy : public Study {
   public:
     [[nodiscard]] std::string name() const override { return "speed-accuracy"; }
@@ -236,16 +238,12 @@ class SpeedAccuracy : public Study {
                 cases.push_back(by_seed[i](plan.first_seed + static_cast<std::uint64_t>(turn)));
         return cases;
     }
-
-    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions& options) const override {
-        return speed_accuracy::summarise(data, options);
-    }
 };
 
-}  // namespace speed_accuracy
+}  // namespace
 
 std::unique_ptr<Study> speed_accuracy_study() {
-    return std::make_unique<speed_accuracy::SpeedAccuracy>();
+    return std::make_unique<SpeedAccuracy>();
 }
 
 }  // namespace raypool::studies

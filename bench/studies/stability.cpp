@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 
 #include <fmt/format.h>
 
 #include "bench/stability/case.h"
 #include "bench/stability/failures.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/statistics.h"
 #include "bench/studies/studies.h"
 #include "core/image/image_file.h"
 
@@ -107,33 +105,6 @@ std::vector<Row> image_rows(const Failure& failure, const RenderSettings& settin
     return rows;
 }
 
-std::string number(double x) {
-    return x == 0 ? "0" : fmt::format("{:.2g}", x);
-}
-
-/// Where a method breaks, first and worst, in words.
-struct Breaking {
-    bool is_broken = false;
-    bool is_within_held = false;  ///< broken where ours must hold
-    std::string text = "holds";
-};
-Breaking breaking(const stability::Case& one, const Table& rows) {
-    Breaking breaking;
-    double worst = 0;
-    const std::vector<double> errors = rows.numbers("error");
-    for (const double error : errors) worst = std::max(worst, error);
-    for (std::size_t i = 0; i < std::min(errors.size(), one.values.size()); ++i) {
-        if (errors[i] <= one.tolerance) continue;
-        breaking.is_broken = true;
-        breaking.is_within_held = i < one.held_values();
-        breaking.text =
-            fmt::format("breaks at {:g} with {}; worst {}", one.values[i], number(errors[i]), number(worst));
-        break;
-    }
-    if (!breaking.is_broken) breaking.text = fmt::format("holds; worst {}", number(worst));
-    return breaking;
-}
-
 class Stability : public Study {
   public:
     [[nodiscard]] std::string name() const override { return "stability"; }
@@ -190,110 +161,13 @@ class Stability : public Study {
         }
     }
 
-    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions& options) const override;
+    [[nodiscard]] nlohmann::json facts() const override {
+        nlohmann::json cases = nlohmann::json::object();
+        for (const stability::Case& one : stability::all_cases())
+            cases[one.id] = {{"symptom", one.symptom}, {"limit", one.limit}};
+        return {{"cases", cases}};
+    }
 };
-
-TextTable verdict_table(const Table& curves) {
-    TextTable table{"Where each method breaks",
-                    {"row", "case", "parameter", "measure", "tolerance", "method", "verdict", "in an image"},
-                    {}};
-    for (const stability::Case& one : stability::all_cases()) {
-        bool is_first = true;
-        for (const Method& method : one.methods) {
-            const Breaking found = breaking(one, curves.where("id", one.id).where("method", method.name));
-            std::string verdict = found.text;
-            if (method.kind == Kind::Ours && found.is_broken && !found.is_within_held && !one.limit.empty())
-                verdict += " (" + one.limit + ")";
-            const auto once = [&](const std::string& text) { return is_first ? text : std::string(); };
-            table.rows.push_back({once(one.row), once(one.id), once(one.parameter), once(one.measure),
-                                  once(number(one.tolerance)),
-                                  method.kind == Kind::Ours ? "**" + method.name + "**" : method.name, verdict,
-                                  method.kind == Kind::Naive && found.is_broken ? one.symptom : ""});
-            is_first = false;
-        }
-    }
-    return table;
-}
-
-TextTable cost_table(const Table& costs) {
-    TextTable table{"What robustness costs, nanoseconds a call (median, lowest and highest run)",
-                    {"row", "case", "method", "ns"},
-                    {}};
-    for (const Value& id : costs.distinct("id"))
-        for (const Value& method : costs.where("id", id).distinct("method")) {
-            const Table runs = costs.where("id", id).where("method", method);
-            table.rows.push_back({runs.distinct("row").at(0).get<std::string>(), id.get<std::string>(),
-                                  method.get<std::string>(), to_text(spread(runs.numbers("ns")))});
-        }
-    return table;
-}
-
-Summary Stability::summarise(const Table& data, const StudyOptions&) const {
-    Summary summary;
-    const Table curves = data.where("kind", kCurve);
-
-    // All naive methods break, and ours hold where they are said to.
-    std::string held_not;
-    std::string broken_not;
-    std::size_t ours = 0;
-    std::size_t naive = 0;
-    for (const stability::Case& one : stability::all_cases()) {
-        for (const Method& method : one.methods) {
-            const Breaking found = breaking(one, curves.where("id", one.id).where("method", method.name));
-            const std::string name = fmt::format("{} ({})", one.id, method.name);
-            if (method.kind == Kind::Ours) {
-                ++ours;
-                if (found.is_within_held) held_not += (held_not.empty() ? "" : ", ") + name;
-            } else if (method.kind == Kind::Naive) {
-                ++naive;
-                if (!found.is_broken) broken_not += (broken_not.empty() ? "" : ", ") + name;
-            }
-        }
-    }
-    summary.findings.push_back({"", "ours hold the tolerance wherever the case asks it", "",
-                                fmt::format("{} methods in {} cases", ours, stability::all_cases().size()),
-                                held_not.empty() ? Verdict::Holds : Verdict::DoesNotHold, held_not});
-    summary.findings.push_back({"", "every naive method breaks within its case", "", fmt::format("{} methods", naive),
-                                broken_not.empty() ? Verdict::Holds : Verdict::DoesNotHold, broken_not});
-    const Table images = data.where("kind", kImage);
-    for (const Failure& failure : stability::all_failures()) {
-        const Table both = images.where("id", failure.id);
-        const double naive_changed = both.where("method_kind", "naive").numbers("error").at(0);
-        const double our_changed = both.where("method_kind", "ours").numbers("error").at(0);
-        summary.findings.push_back(
-            {"", fmt::format("{}: the naive method changes more of the image than single precision does", failure.id),
-             "",
-             fmt::format("pixels that differ from double by more than 0.02: naive {:.1f} %, ours {:.1f} %",
-                         100 * naive_changed, 100 * our_changed),
-             naive_changed > our_changed ? Verdict::Holds : Verdict::DoesNotHold, ""});
-    }
-    summary.tables.push_back(verdict_table(curves));
-    summary.tables.push_back(cost_table(data.where("kind", kCost)));
-
-    for (const Failure& failure : stability::all_failures())
-        summary.pictures.push_back({failure.id, failure.title, failure.caption});
-    const char* how =
-        " Dashed: naive; solid: ours; dotted: others. The grey line is the tolerance, the shaded part lies beyond what "
-        "is asked of ours. An error of 0 lies on the lower edge.";
-    const auto add = [&](const char* name, const char* title, const char* what) {
-        summary.pictures.push_back({name, title, std::string(what) + how});
-    };
-    add("spheres", "Far, grazing and huge spheres", "What to see: naive curves climb by the square of the distance.");
-    add("leaving", "Rays that start on a surface",
-        "What to see: any least distance is too small here and too large there.");
-    add("boxes", "Boxes and motion", "What to see: naive tests are wrong from the first value on.");
-    add("scattering", "Directions and glass", "What to see: not-a-numbers where arithmetic meets its edge.");
-    add("paths", "Long paths and sums", "What to see: sums in float stop growing, and depend on their order.");
-    add("others", "Seeds, checkers, sizes, flat shapes", "What to see: ours holds far out, and where it ends.");
-    summary.notes.push_back(
-        "Errors come from fixed seeds and are the same in every run on one machine. Costs are timed in a register of "
-        "rays (spheres, checkers), one by one (boxes, glass), or a term or number at a time, all in the first-level "
-        "cache.");
-    summary.notes.push_back(
-        "The images of failure are made by the iterative engine, its kernels compiled with one naive method "
-        "(bench/stability/naive_engines.cpp); the same samples everywhere, so differences are not noise.");
-    return summary;
-}
 
 }  // namespace
 

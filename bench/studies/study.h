@@ -1,8 +1,8 @@
-/// What a study is: cases to run, the table that they fill, and what the table says.
+/// What a study is: cases to run, and the table that they fill.
 ///
 /// A study owns the question and nothing else: runner.h interleaves the repeats, checks the images, keeps the data and
-/// resumes an interrupted run. To add a study, derive from Study in a file of its own and list it in registry.cpp; its
-/// pictures are drawn by a module of the same name in scripts/plots/.
+/// resumes an interrupted run. To add a study, derive from Study in a file of its own and list it in registry.cpp. What
+/// the table says is Python's: a module of the same name in scripts/analysis/ reads the rows, judges and draws them.
 #pragma once
 
 #include <cstdint>
@@ -39,38 +39,6 @@ struct Case {
     std::function<std::vector<Row>()> run;  ///< one repeat: rows of the study's columns. Seconds, not minutes
 };
 
-enum class Verdict : std::uint8_t { Holds, DoesNotHold, CannotTell };
-
-/// What the paper, or the project, claims, and what was found.
-struct Finding {
-    std::string source;  ///< "Figure 5", "Table 1" of the paper; empty for a question of ours
-    std::string claim;
-    std::string paper;  ///< its figures
-    std::string ours;
-    Verdict verdict = Verdict::CannotTell;
-    std::string why;  ///< always, where it cannot be told
-};
-
-/// Drawn by scripts/plots/<study>.py as <name>.svg and <name>.png.
-struct Picture {
-    std::string name;
-    std::string title;
-    std::string caption;  ///< what to see
-};
-
-struct TextTable {
-    std::string title;
-    std::vector<std::string> header;
-    std::vector<std::vector<std::string>> rows;
-};
-
-struct Summary {
-    std::vector<Finding> findings;
-    std::vector<Picture> pictures;
-    std::vector<TextTable> tables;
-    std::vector<std::string> notes;
-};
-
 class Study {
   public:
     Study() = default;
@@ -85,8 +53,8 @@ class Study {
     [[nodiscard]] virtual std::vector<Column> columns() const = 0;
     /// Throws InputError for options that it cannot carry out.
     [[nodiscard]] virtual std::vector<Case> cases(const StudyOptions& options) const = 0;
-    /// From all rows of all cases ("case", "repeat" and the study's columns).
-    [[nodiscard]] virtual Summary summarise(const Table& data, const StudyOptions& options) const = 0;
+    /// What the analysis must know of this build and machine beside the rows, as "facts" in run.json.
+    [[nodiscard]] virtual nlohmann::json facts() const { return nlohmann::json::object(); }
     /// Images that the study renders itself, for its pictures to show; written into the folder of its data.
     virtual void write_images(const std::filesystem::path& /*folder*/, const StudyOptions& /*options*/) const {}
 };

@@ -87,10 +87,6 @@ void add_line(Table& table, const std::vector<std::string>& cells, const std::fu
 
 }  // namespace
 
-bool Table::has(std::string_view column) const {
-    return std::any_of(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == column; });
-}
-
 std::size_t Table::index(std::string_view column) const {
     const auto found =
         std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == column; });
@@ -101,30 +97,6 @@ std::size_t Table::index(std::string_view column) const {
 void Table::add(Row row) {
     RAYPOOL_CHECK(row.size() == columns_.size(), "a row has a value for each column");
     rows_.push_back(std::move(row));
-}
-
-Table Table::where(std::string_view column, const Value& value) const {
-    const std::size_t i = index(column);
-    Table found(columns_);
-    std::copy_if(rows_.begin(), rows_.end(), std::back_inserter(found.rows_),
-                 [&](const Row& row) { return row[i] == value; });
-    return found;
-}
-
-std::vector<double> Table::numbers(std::string_view column) const {
-    const std::size_t i = index(column);
-    std::vector<double> numbers;
-    for (const Row& row : rows_)
-        if (!row[i].is_null()) numbers.push_back(row[i].get<double>());
-    return numbers;
-}
-
-std::vector<Value> Table::distinct(std::string_view column) const {
-    const std::size_t i = index(column);
-    std::vector<Value> values;
-    for (const Row& row : rows_)
-        if (std::find(values.begin(), values.end(), row[i]) == values.end()) values.push_back(row[i]);
-    return values;
 }
 
 std::string fault(const Value& value, ColumnType type) {

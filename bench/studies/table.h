@@ -37,20 +37,11 @@ class Table {
 
     [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
     [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
-    [[nodiscard]] bool is_empty() const { return rows_.empty(); }
     /// A column that does not exist is a bug.
     [[nodiscard]] std::size_t index(std::string_view column) const;
-    [[nodiscard]] bool has(std::string_view column) const;
 
     /// A row of a wrong length is a bug.
     void add(Row row);
-
-    /// The rows in which `column` is `value`.
-    [[nodiscard]] Table where(std::string_view column, const Value& value) const;
-    /// The values of a column, without those that do not exist.
-    [[nodiscard]] std::vector<double> numbers(std::string_view column) const;
-    /// The different values of a column, in the order of their first rows.
-    [[nodiscard]] std::vector<Value> distinct(std::string_view column) const;
 
   private:
     std::vector<Column> columns_;

@@ -2,7 +2,6 @@
 #include "bench/accuracy/statistics.h"
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <random>
 
@@ -92,106 +91,6 @@ TEST(Variances, AreEachTheVarianceOfAnImageWithoutItsBias) {
     const std::vector<double> pair = variances({image(1, 0.5), image(2, 0.5)});
     EXPECT_NEAR(pair[0], 0.5 * mean_squared_difference(image(1, 0.5), image(2, 0.5)), 1e-12);
 }
-
-double mean_of_indices(std::span<const double> values, std::span<const std::size_t> indices) {
-    double sum = 0;
-    for (const std::size_t i : indices) sum += values[i];
-    return sum / static_cast<double>(indices.size());
-}
-
-TEST(Bootstrap, HoldsTheTruthAboutAsOftenAsItSays) {
-    int held = 0;
-    constexpr int kTrials = 200;
-    for (int trial = 0; trial < kTrials; ++trial) {
-        std::mt19937_64 random(trial);
-        std::normal_distribution<double> chance(3, 1);
-        std::vector<double> values(20);
-        for (double& value : values) value = chance(random);
-        const auto mean = [&](std::span<const std::size_t> indices) { return mean_of_indices(values, indices); };
-        held += bootstrap(values.size(), mean, 1).excludes(3) ? 0 : 1;
-    }
-    EXPECT_GE(held, 0.88 * kTrials);
-    EXPECT_LE(held, 0.98 * kTrials);
-}
-
-TEST(Bootstrap, IsRepeatableAndOfOneValueIsThatValue) {
-    const std::vector<double> values{1, 5, 2, 8, 3};
-    const auto mean = [&](std::span<const std::size_t> indices) { return mean_of_indices(values, indices); };
-    EXPECT_EQ(bootstrap(5, mean, 7).low, bootstrap(5, mean, 7).low);
-    EXPECT_LT(bootstrap(5, mean, 7).low, bootstrap(5, mean, 7).high);
-    EXPECT_EQ(bootstrap(1, mean, 7).low, 1);
-    EXPECT_EQ(bootstrap(1, mean, 7).high, 1);
-}
-
-struct EfficiencyCase {
-    const char* what;
-    Runs a, b;
-    double ratio;
-    Winner winner;
-};
-class CompareEfficiency : public testing::TestWithParam<EfficiencyCase> {};
-
-TEST_P(CompareEfficiency, SaysWhoWinsOnlyWhereTheIntervalExcludesOne) {
-    const EfficiencyCase& c = GetParam();
-    const Comparison found = compare_efficiency(c.a, c.b, 1);
-    EXPECT_NEAR(found.ratio, c.ratio, 1e-9) << c.what;
-    EXPECT_EQ(found.winner, c.winner) << c.what;
-    EXPECT_LE(found.interval.low, found.ratio);
-    EXPECT_GE(found.interval.high, found.ratio);
-}
-
-const Runs kNoisy{{1, 1.1, 0.9, 1, 1, 1}, {4, 5, 3, 4.5, 3.5, 4}};
-
-INSTANTIATE_TEST_SUITE_P(Cases, CompareEfficiency,
-                         testing::Values(EfficiencyCase{"the same image in half the time",
-                                                        {{1, 1.1, 0.9, 1, 1, 1}, {4, 5, 3, 4.5, 3.5, 4}},
-                                                        {{2, 2.2, 1.8, 2, 2, 2}, {4, 5, 3, 4.5, 3.5, 4}},
-                                                        2,
-                                                        Winner::First},
-                                         EfficiencyCase{"twice the error, the same time",
-                                                        {{1, 1, 1, 1, 1, 1}, {8, 8.2, 7.8, 8, 8, 8}},
-                                                        {{1, 1, 1, 1, 1, 1}, {4, 4.1, 3.9, 4, 4, 4}},
-                                                        0.5,
-                                                        Winner::Second},
-                                         EfficiencyCase{"against itself", kNoisy, kNoisy, 1, Winner::NoDifference},
-                                         EfficiencyCase{"less than the spread",
-                                                        kNoisy,
-                                                        {{1, 1, 1, 1, 1, 1}, {3, 5, 4.5, 3.5, 4, 4.1}},
-                                                        4.016666666666667 / 4,
-                                                        Winner::NoDifference},
-                                         EfficiencyCase{"too few seeds",
-                                                        {{1, 1, 1, 1}, {1, 1, 1, 1}},
-                                                        {{2, 2, 2, 2}, {1, 1, 1, 1}},
-                                                        2,
-                                                        Winner::NoDifference},
-                                         EfficiencyCase{"an outlier of the machine",
-                                                        {{1, 1, 1, 1, 1, 90, 1, 1, 1, 1}, std::vector<double>(10, 4)},
-                                                        {std::vector<double>(10, 2), std::vector<double>(10, 4)},
-                                                        2,
-                                                        Winner::First}),
-                         [](const auto& info) { return std::to_string(info.index); });
-
-TEST(Efficiency, IsInfiniteWhereTheCorrectionLeavesNoError) {
-    const std::vector<std::size_t> indices{0, 1};
-    EXPECT_EQ(efficiency({{1, 1}, {-1, 0.5}}, indices), std::numeric_limits<double>::infinity());
-    EXPECT_DOUBLE_EQ(efficiency({{2, 4}, {0.25, 0.75}}, indices), 1 / (0.5 * 3));
-}
-
-struct ParetoCase {
-    std::vector<Point> points;
-    std::vector<std::size_t> front;
-};
-class ParetoFront : public testing::TestWithParam<ParetoCase> {};
-TEST_P(ParetoFront, HoldsWhatNoOtherPointBeats) {
-    EXPECT_EQ(pareto_front(GetParam().points), GetParam().front);
-}
-INSTANTIATE_TEST_SUITE_P(Cases, ParetoFront,
-                         testing::Values(ParetoCase{{}, {}}, ParetoCase{{{1, 1}}, {0}},
-                                         ParetoCase{{{1, 3}, {2, 2}, {3, 1}}, {0, 1, 2}},
-                                         ParetoCase{{{3, 1}, {2, 2}, {1, 3}}, {2, 1, 0}},
-                                         ParetoCase{{{1, 3}, {2, 4}, {3, 1}}, {0, 2}},
-                                         ParetoCase{{{2, 2}, {2, 1}, {2, 2}}, {1}}, ParetoCase{{{1, 1}, {1, 1}}, {0}},
-                                         ParetoCase{{{1, 2}, {2, 2}}, {0}}));
 
 TEST(LogLogSlope, IsTheExponent) {
     const std::vector<double> x{1, 4, 16, 64};

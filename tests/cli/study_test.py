@@ -110,6 +110,28 @@ class StudyTest(CommandTest):
         for _ in range(2):
             self.run_well("study", "schedules", *TINY, "--threads", 1, "--scene", scene, "--out", scene[:-5], "--quiet")
             self.check_folder(self.folder / scene[:-5])
+
+    def test_a_complete_run_is_analysed_anew_and_says_the_same(self):
+        self.run_well("study", "schedules", *TINY, "--quiet")
+        before = self.listing()
+        (self.folder / "out/schedules/summary.md").unlink()
+        (self.folder / "out/schedules/schedules.png").unlink()
+        said = self.run_well("study", "schedules", *TINY).stdout
+        self.assertEqual(said, "out/schedules/summary.md\n")
+        self.assertEqual(self.listing(), before)
+
+    def test_without_a_package_of_the_analysis_the_data_are_kept_to_go_on_with(self):
+        (self.folder / "hidden").mkdir()
+        self.write("hidden/matplotlib.py", "raise ModuleNotFoundError('hidden by a test')")
+        hidden = {"PYTHONPATH": str(self.folder / "hidden")}
+        refused = self.run_command("study", "schedules", *TINY, "--quiet", environment=hidden)
+        self.assert_one_line(refused, 1, "out/schedules: the data are complete", "python3-matplotlib")
+        rows = rows_of(self.folder / "out/schedules")
+        self.assertFalse((self.folder / "out/schedules/summary.md").exists())
+        self.run_well("study", "schedules", *TINY, "--quiet")
+        self.assertEqual(rows_of(self.folder / "out/schedules"), rows)
+        self.check_folder(self.folder / "out/schedules")
+
     def test_figures_that_no_run_leaves_are_refused_by_their_line(self):
         self.run_well("study", "schedules", *TINY, "--quiet")
         data = self.folder / "out/schedules/data.csv"

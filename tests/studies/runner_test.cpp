@@ -8,7 +8,6 @@
 #include <csignal>
 #include <map>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,14 +37,10 @@ class Fake : public Study {
                 {"b", "image", 3, rows("b", {{0.5, hash_of_b}})},
                 {"two rows", "", 1, rows("two rows", {{1.0, nullptr}, {2.0, nullptr}})}};
     }
-    [[nodiscard]] Summary summarise(const Table& data, const StudyOptions&) const override {
-        Summary summary;
-        summary.notes.push_back(fmt::format("{} rows", data.rows().size()));
-        summary.findings.push_back({"Figure 5", "a claim", "a figure", "ours", Verdict::Holds, ""});
-        return summary;
-    }
+    [[nodiscard]] nlohmann::json facts() const override { return {{"cores", cores}}; }
 
     const char* hash_of_b = "12";
+    int cores = 2;
     std::size_t stop_after = 0;
     mutable std::vector<std::string> order;
     mutable std::atomic<int> stop_signal = 0;
@@ -74,11 +69,13 @@ TEST(StudyRunner, InterleavesRepeatsAndKeepsEveryRow) {
     EXPECT_THAT(study.order, testing::ElementsAre("a", "b", "two rows", "b", "a", "a", "b"));
     EXPECT_EQ(counts(data_of(folder)), kComplete);
     EXPECT_EQ(progress.paths, run_count(study, {}));
-    EXPECT_THAT(file_text(folder / "summary.md"),
-                testing::AllOf(testing::HasSubstr("8 rows"), testing::HasSubstr("**holds**")));
+    EXPECT_EQ(data_of(folder).rows().size(), 8U);
     const nlohmann::json run = nlohmann::json::parse(file_text(folder / "run.json"));
     EXPECT_TRUE(run.at("environment").contains("commit"));
-    EXPECT_EQ(run.at("findings")[0].at("source"), "Figure 5");
+    EXPECT_TRUE(run.contains("finished"));
+    EXPECT_GE(run.at("stolen"), 0);
+    EXPECT_EQ(run.at("facts").at("cores"), 2);
+    EXPECT_EQ(run.at("question"), "Does it work?");
 }
 
 TEST(StudyRunner, ResumesWithoutLosingOrRepeatingARow) {
@@ -125,14 +122,29 @@ void change_commit(const ScratchFolder& folder) {
     set_file_text(folder / "run.json", run.dump(2));
 }
 
-TEST(StudyRunner, SummarisesACompleteRunOfAnotherBuildAndKeepsItsOrigin) {
+TEST(StudyRunner, TakesUpACompleteRunOfAnotherBuildAndKeepsItsOrigin) {
     const ScratchFolder folder;
     EXPECT_TRUE(run_study(Fake(), {}, folder.path(), {}));
     change_commit(folder);
+    Fake study;
+    study.cores = 64;
+    EXPECT_TRUE(run_study(study, {}, folder.path(), {}));
+    EXPECT_TRUE(study.order.empty());
+    const nlohmann::json run = nlohmann::json::parse(file_text(folder / "run.json"));
+    EXPECT_EQ(run.at("environment").at("commit"), "another");
+    EXPECT_EQ(run.at("facts").at("cores"), 2);
+}
+
+TEST(StudyRunner, FinishesARunWhoseLastRowWasItsLastWord) {
+    const ScratchFolder folder;
+    EXPECT_TRUE(run_study(Fake(), {}, folder.path(), {}));
+    nlohmann::json run = nlohmann::json::parse(file_text(folder / "run.json"));
+    run.erase("finished");
+    set_file_text(folder / "run.json", run.dump(2));
     const Fake study;
     EXPECT_TRUE(run_study(study, {}, folder.path(), {}));
     EXPECT_TRUE(study.order.empty());
-    EXPECT_THAT(file_text(folder / "summary.md"), testing::HasSubstr("commit another"));
+    EXPECT_TRUE(nlohmann::json::parse(file_text(folder / "run.json")).contains("finished"));
 }
 
 TEST(StudyRunner, DoesNotGoOnWithTheRunOfAnotherBuild) {
@@ -238,8 +250,9 @@ TEST(StudyRunner, KeepsNoRowOfAWrongImage) {
     Fake study;
     study.hash_of_b = "13";
     EXPECT_THROW(run_study(study, {}, folder.path(), {}), WrongImage);
-    EXPECT_EQ(data_of(folder).where("case", "b").rows().size(), 0U);
-    EXPECT_FALSE(std::filesystem::exists(folder / "summary.md"));
+    const Table kept = data_of(folder);
+    for (const Row& row : kept.rows()) EXPECT_NE(row[0], "b");
+    EXPECT_FALSE(nlohmann::json::parse(file_text(folder / "run.json")).contains("finished"));
 }
 
 }  // namespace

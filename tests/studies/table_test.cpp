@@ -65,16 +65,5 @@ TEST(StudyTable, RefusesWhatDoesNotFitNamingTheLine) {
     EXPECT_THAT(refusal(csv_header(kColumns) + "a,-1,0,0\n"), testing::HasSubstr("line 2: count is -1"));
 }
 
-TEST(StudyTable, SelectsRowsAndValues) {
-    Table table(kColumns);
-    table.add({"a", 1, 0.5, 0});
-    table.add({"b", 1, 0.25, 0});
-    table.add({"a", 2, nullptr, 0});
-    EXPECT_EQ(table.where("name", "a").rows().size(), 2U);
-    EXPECT_EQ(table.where("count", 1).numbers("seconds"), (std::vector<double>{0.5, 0.25}));
-    EXPECT_EQ(table.numbers("seconds").size(), 2U);
-    EXPECT_EQ(table.distinct("name"), (std::vector<Value>{"a", "b"}));
-}
-
 }  // namespace
 }  // namespace raypool::studies

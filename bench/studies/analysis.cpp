@@ -1,0 +1,46 @@
+#include "bench/studies/analysis.h"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "bench/studies/process.h"
+
+namespace raypool::studies {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPython = "/usr/bin/python3";  // the one that the distribution's matplotlib is for
+constexpr int kPackageIsMissing = 3;                 // scripts/analysis/__main__.py
+
+/// Beside the command where it is installed, else in the source tree that it was built from.
+fs::path package() {
+    const fs::path installed = fs::read_symlink("/proc/self/exe").parent_path() / RAYPOOL_INSTALLED_ANALYSIS;
+    return fs::exists(installed) ? installed : fs::path(RAYPOOL_SOURCE_ANALYSIS);
+}
+
+void run_analysis(const fs::path& folder, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {kPython, "-B", package().string()});
+    const int status = fs::exists(kPython) ? run_process(arguments) : kPackageIsMissing;
+    if (status == 0) return;
+    throw std::runtime_error(
+        fmt::format("{}: the data are complete, but {}; the same command goes on from there", folder.string(),
+                    status == kPackageIsMissing ? "their analysis needs the packages python3 and python3-matplotlib"
+                                                : fmt::format("their analysis failed (exit status {})", status)));
+}
+
+}  // namespace
+
+void analyse(const fs::path& folder) {
+    run_analysis(folder, {"study", folder.string()});
+}
+
+void write_reproduction(const fs::path& folder, const std::vector<std::string>& studies) {
+    std::vector<std::string> arguments{"reproduce", folder.string()};
+    arguments.insert(arguments.end(), studies.begin(), studies.end());
+    run_analysis(folder, std::move(arguments));
+}
+
+}  // namespace raypool::studies

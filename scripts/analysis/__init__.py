@@ -1,0 +1,6 @@
+"""What the rows of a study say: findings, tables, pages and pictures, from what `raypool study` leaves in a folder.
+
+A module for each study, of its name, with summarise(run, rows) and PICTURES[name](run, rows); `run` is run.json and
+`rows` are those of data.csv. What they share: data.py reads and writes the folder, spreads.py, efficiency.py,
+crossover.py and verdict.py judge figures, summary.py is what a study says, page.py writes it down and drawing.py draws.
+"""

@@ -1,0 +1,104 @@
+"""Work of each thread under every way of sharing it out: the paper's Figure 5, and the same of pools."""
+from .data import distinct, numbers, where
+from .drawing import COLOURS, plt
+from .spreads import coefficient_of_variation, max_over_mean
+from .summary import Finding, Picture, Summary, Table
+from .verdict import Verdict, judged
+
+
+def load(run, rows):
+    rows = where(rows, repeat=0)
+    ways = distinct(rows, "group", "way")
+    ways.sort(key=lambda way: way[0] != "recursion")
+    columns = 5
+    lines = -(-len(ways) // columns)
+    figure, axes = plt.subplots(lines, columns, figsize=(13, 0.9 + 2.05 * lines), sharex=True, sharey=True, squeeze=False)
+    for axis, (group, way) in zip(axes.flat, ways):
+        own = sorted(where(rows, group=group, way=way), key=lambda row: row["thread"])
+        tests = [row["tests"] for row in own]
+        mean = sum(tests) / len(tests) or 1
+        mean_rays = sum(row["segments"] for row in own) / len(own) or 1
+        threads = [row["thread"] for row in own]
+        axis.bar(threads, [t / mean for t in tests], width=0.85, color=COLOURS[4] if group == "recursion" else COLOURS[1],
+                 edgecolor="black" if len(own) <= 32 else "none", linewidth=0.5)
+        axis.plot(threads, [row["segments"] / mean_rays for row in own], marker="o", color="black", markerfacecolor="white",
+                  markersize=4 if len(own) <= 32 else 1.5, linestyle="none")
+        axis.axhline(1, color="black", linewidth=0.9)
+        name = f"pool: {way}" if group == "pool" else way
+        source = "" if own[0]["source"] == "counted" else f"  ({own[0]['source']})"
+        axis.set_title(f"{name}\n$\\bf{{{max(tests) / mean:.3f}}}${source}", fontsize=8.5)
+        axis.grid(axis="x", visible=False)
+        axis.set_ylim(bottom=0)
+    for axis in axes.flat[len(ways):]:
+        axis.set_visible(False)
+    for axis in axes[:, 0]:
+        axis.set_ylabel("work / mean")
+    for column in range(columns):
+        last = max((i for i in range(lines) if i * columns + column < len(ways)), default=0)
+        axes[last][column].set_xlabel("thread")
+        axes[last][column].tick_params(labelbottom=True)
+    return figure
+
+
+def first_run(rows, way):
+    """Counts are the same in all."""
+    return where(rows, way=way, repeat=0)
+
+
+def load_of(rows, way, unit):
+    return max_over_mean(numbers(first_run(rows, way), unit))
+
+
+def loads(rows, threads):
+    table = Table(f"Load of {threads} threads",
+                  ["way", "source", "tests: max/mean", "tests: CV", "rays: max/mean", "rays: CV", "busy: max/mean"])
+    for group in ("recursion", "pool"):
+        for way in distinct(where(rows, group=group), "way"):
+            run = first_run(rows, way)
+            busy = numbers(run, "busy_s")
+            cells = [f"{figure(numbers(run, unit)):.3f}" for unit in ("tests", "segments")
+                     for figure in (max_over_mean, coefficient_of_variation)]
+            table.rows.append([way, run[0]["source"], *cells, f"{max_over_mean(busy):.3f}" if busy else ""])
+    return table
+
+
+def shared_out(threads, claim, ours, is_true, **more):
+    if threads == 1:
+        return Finding(claim, ours, Verdict.CANNOT_TELL, "one thread has nothing to share out", **more)
+    return Finding(claim, ours, judged(is_true), **more)
+
+
+def findings(rows, threads):
+    basic, static1, collapse = (load_of(rows, way, "tests") for way in (
+        "lines, static (default)", "lines, static,1", "pixels, static,1 (collapse)"))
+    yield shared_out(
+        threads, "the default schedule of lines is the worst balanced, static,1 better, pixel by pixel the best",
+        f"max/mean of tests {basic:.3f}, {static1:.3f} and {collapse:.3f}, {threads} threads",
+        basic > static1 > collapse, source="Figure 5", paper="histograms of 8 threads, width 800")
+    rays, tests = (load_of(rows, "one of all paths, equal shares", unit) for unit in ("segments", "tests"))
+    yield shared_out(
+        threads, "a pool that shares out its rays evenly shares out its work evenly",
+        f"equal shares of every round: max/mean of rays {rays:.3f}, of tests {tests:.3f}, {threads} threads",
+        tests <= 1.02)
+
+
+def summarise(run, rows):
+    threads = rows[0]["threads"]
+    summary = Summary(tables=[loads(rows, threads)], findings=list(findings(rows, threads)))
+    summary.pictures.append(Picture(
+        "load", f"Work of each of {threads} threads",
+        "Each bar is a thread's box and primitive tests, each white dot the rays that it traced, both over the mean "
+        "(the line at 1). The number is max/mean of tests: 1 is perfect balance, and all threads wait for the tallest "
+        "bar. What to see: which ways leave tall bars; and, in the last panel, that a pool whose dots are on the line "
+        "may have its bars far from it: equal rays are not equal work."))
+    summary.notes = [
+        "Static schedules, and every pool, are counted in a real run. Loops that hand out work as threads ask for it "
+        "are counted too where there are enough cores, and replayed from the recorded costs of all paths where there "
+        "are not. Pools count the tests that their streams and packets make, replays those of single rays.",
+        "Pools: lines, or batches of the shared pools, in turn (static,1) where nothing else is said. What a thread of a "
+        "shared pool traces depends on who fetches camera rays first, so its counts differ a little from run to run; "
+        "and sums over rounds do not show what threads wait for each other within a round: the replay study does."]
+    return summary
+
+
+PICTURES = {"load": load}

@@ -1,0 +1,197 @@
+"""From which size of scene on a pool beats recursion: ratio, time of a ray and lists, by the number of shapes."""
+import statistics
+
+from .crossover import AtCapacity, best, crossover
+from .data import distinct, numbers, where
+from .drawing import COLOURS, line, plt
+from .spreads import ratios, spread, text, threads_text
+from .summary import Finding, Picture, Summary, Table
+from .verdict import is_at_least, why_open
+
+COUNTED = "cache misses, "  # before the name of a way
+AUTOMATIC_LISTS = "lists, automatic"
+
+BLUE, ORANGE, GREEN, RED, SKY, PINK, BLACK, YELLOW = COLOURS
+
+
+def timed(rows):
+    return [row for row in rows if not row["way"].startswith((COUNTED, "lists, "))]
+
+
+def panels(rows, label):
+    """A panel for each kind, in a row for each depth; of the most threads."""
+    threads = max(distinct(rows, "threads"))
+    rows = where(timed(rows), threads=threads)
+    kinds, depths = distinct(rows, "kind"), distinct(rows, "depth")
+    figure, axes = plt.subplots(len(depths), len(kinds), figsize=(4.2 * len(kinds) + 1.8, 3.9 * len(depths) + 0.8),
+                                sharex=True, sharey="row", squeeze=False)
+    for across, depth in zip(axes, depths):
+        for axis, kind in zip(across, kinds):
+            axis.set_xscale("log")
+            axis.set_title(f"{kind}, depth {depth:.0f}, {threads:.0f} thread{'s' if threads > 1 else ''}")
+            yield figure, axis, where(rows, depth=depth, kind=kind)
+        across[0].set_ylabel(label)
+        across[-1].legend(loc="upper left", bbox_to_anchor=(1, 1))
+    for axis in axes[-1]:
+        axis.set_xlabel("shapes")
+
+
+def way_ratio(here, way, **more):
+    """Of a way to recursion, over the runs side by side."""
+    return spread(ratios(*(numbers(where(here, way=w, **more), "mpaths_per_s") for w in (way, "recursion"))))
+
+
+def ratio(run, rows):
+    for figure, axis, here in panels(rows, "times as fast as recursion"):
+        sizes = distinct(here, "shapes")
+        for index, capacity in enumerate(capacities(here)):
+            line(axis, sizes, [way_ratio(here, str(capacity), shapes=size) for size in sizes], index=index,
+                 label=f"{capacity} records", linestyle="--")
+        line(axis, sizes, [way_ratio(here, "automatic", shapes=size) for size in sizes], color=BLACK, marker="*",
+             label="automatic")
+        axis.axhline(1, color="black", linewidth=2, label="recursion")
+    for axis in figure.axes:  # after the last panel, since rows share an axis that stops growing here
+        axis.set_ylim(bottom=0)
+    return figure
+
+
+def time(run, rows):
+    for figure, axis, here in panels(rows, "nanoseconds of a thread for a ray"):
+        sizes = distinct(here, "shapes")
+        for way, label, style in (("recursion", "recursion", {"color": RED, "marker": "s", "linestyle": "--"}),
+                                  ("automatic", "pool", {"color": BLUE, "marker": "o"})):
+            line(axis, sizes, [spread(numbers(where(here, way=way, shapes=size), "ns_per_segment")) for size in sizes],
+                 label=label, **style)
+        axis.set_yscale("log")
+    return figure
+
+
+SHORT_LIST = 12  # rays; kShortList of wavefront/stream.h
+
+
+def lists(run, rows):
+    rows = where(rows, way=AUTOMATIC_LISTS)
+    kinds = distinct(rows, "kind")
+    figure, axes = plt.subplots(2, len(kinds), figsize=(4.2 * len(kinds) + 1.8, 7.0), sharex=True, sharey="row",
+                                squeeze=False)
+    for above, below, kind in zip(axes[0], axes[1], kinds):
+        for index, shapes in enumerate(distinct(where(rows, kind=kind), "shapes")):
+            here = where(rows, kind=kind, shapes=shapes)
+            lengths = [row["list_rays"] / row["lists"] for row in here]
+            line(above, [row["level"] for row in here], [(value, value, value) for value in lengths], index=index,
+                 label=f"{shapes:.0f} shapes")
+            full = [row for row in here if row["lanes"] > 0]
+            fills = [(row["list_rays"] - row["single_rays"]) / row["lanes"] for row in full]
+            line(below, [row["level"] for row in full], [(value, value, value) for value in fills], index=index)
+        above.axhspan(0.5, SHORT_LIST, color="0.9")
+        above.set_yscale("log")
+        above.set_title(kind)
+        below.set_ylim(0, 1.05)
+        below.set_xlabel("level of the trees")
+    axes[0][0].set_ylabel("rays of a list")
+    axes[1][0].set_ylabel("lanes in use")
+    axes[0][-1].legend(loc="upper left", bbox_to_anchor=(1, 1))
+    return figure
+
+
+def capacities(rows):
+    """The ways that are a number of records."""
+    return [int(way) for way in distinct(rows, "way") if way.isdigit()]
+
+
+def places(rows, threads, depth):
+    """(name, rows) of each scene."""
+    for kind in distinct(where(rows, threads=threads, depth=depth), "kind"):
+        of_kind = where(rows, threads=threads, depth=depth, kind=kind)
+        for shapes in distinct(of_kind, "shapes"):
+            yield f"{shapes} {kind}", where(of_kind, shapes=shapes)
+
+
+def ratio_table(rows, threads, depth):
+    table = Table(f"Ratio to recursion, {threads_text(threads)}, depth {depth}",
+                  ["scene", "trees, MB", "recursion, ns a ray"])
+    for scene, here in places(rows, threads, depth):
+        measured = [AtCapacity(size, way_ratio(here, str(size))) for size in capacities(here)]
+        if not table.rows:
+            table.header += [*(str(at.capacity) for at in measured), "automatic", "its records", "best",
+                             "beats recursion from"]
+        recursion = where(here, way="recursion")
+        table.rows.append([scene, f"{1e-6 * recursion[0]['tree_bytes']:.2f}",
+                           f"{statistics.median(numbers(recursion, 'ns_per_segment')):.0f}",
+                           *(text(at.ratio) for at in measured), text(way_ratio(here, "automatic")),
+                           str(where(here, way="automatic")[0]["capacity"]), str(best(measured).capacity),
+                           str(crossover(measured))])
+    return table
+
+
+def miss_table(rows, depth):
+    """No rows where nothing can count them."""
+    table = Table(f"Cache misses of reads, for each ray, 1 thread, depth {depth}",
+                  ["scene", "way", "first level", "last level", "counted by"])
+
+    def a_ray(of_way, column):
+        counts = numbers(of_way, column)
+        return f"{counts[0] / of_way[0]['segments']:.2f}" if counts else ""
+    for scene, here in places(rows, 1, depth):
+        for way in distinct(here, "way"):
+            of_way = where(here, way=way)
+            if way.startswith(COUNTED):
+                table.rows.append([scene, way.removeprefix(COUNTED), a_ray(of_way, "d1_read_misses"),
+                                   a_ray(of_way, "ll_read_misses"), of_way[0]["source"]])
+    return table
+
+
+def list_table(rows, depth):
+    """Of the default pool. A ray that entered a child is in the list of the next level, unless it went on alone."""
+    table = Table(f"Lists of the default pool by level of the trees, 1 thread, depth {depth}",
+                  ["scene", "level", "rays a list", "lane fill", "rays that enter it in a list, of all rays",
+                   "of these, go on alone"])
+    for scene, here in places(rows, 1, depth):
+        for level in distinct(where(here, way=AUTOMATIC_LISTS), "level"):
+            row = where(here, way=AUTOMATIC_LISTS, level=level)[0]
+            rays, alone = row["list_rays"], row["single_rays"]
+            fill = f"{100 * (rays - alone) / row['lanes']:.0f} %" if rays > alone else ""
+            table.rows.append([scene, str(level), f"{rays / row['lists']:.1f}", fill, f"{rays / row['segments']:.3f}",
+                               f"{100 * alone / rays:.0f} %"])
+    return table
+
+
+def lead_finding(rows, threads, depth, least):
+    """Of the scene where the default pool leads least."""
+    found = {scene: way_ratio(here, "automatic") for scene, here in places(rows, threads, depth)}
+    scene, worst = min(found.items(), key=lambda item: item[1].median)
+    return Finding(f"the default pool is at least {least:g} times as fast as recursion at every size",
+                   f"least for {scene}: {text(worst)}, {threads_text(threads)}, depth {depth}",
+                   is_at_least(worst, least), why_open(worst, least))
+
+
+def summarise(run, rows):
+    summary = Summary()
+    depths = distinct(rows, "depth")
+    for threads in distinct(rows, "threads"):
+        summary.tables += [ratio_table(rows, threads, depth) for depth in depths]
+        summary.findings += [lead_finding(rows, threads, depths[-1], least) for least in (2, 1)]
+    tables = [table(rows, depth) for depth in depths for table in (list_table, miss_table)]
+    summary.tables += [table for table in tables if table.rows]
+    summary.pictures = [
+        Picture("ratio", "How the pool's lead depends on the size of the scene",
+                "Ratio to recursion by the number of shapes, a line for each capacity, with a band from the lowest to the "
+                "highest run; black: the capacity that the trees' bytes choose. What to see: whether a line falls below 1, "
+                "and that small pools lead in small scenes and large ones in large scenes."),
+        Picture("time", "What a ray costs as the scene grows",
+                "Nanoseconds of a thread for each ray, by the number of shapes: recursion, and the pool of automatic "
+                "capacity. What to see: where the lines bend upward, the trees have outgrown a cache."),
+        Picture("lists", "How long the lists of rays are on the way down",
+                "Above, rays of a list by the level of the trees, a line for each number of shapes, of the pool of automatic "
+                "capacity; below, how full the registers are that take them. Grey: shorter lists are taken apart, and their "
+                "rays go on alone. What to see: how far down a pool's rays share nodes, and that registers stay full there.")]
+    summary.notes.append(
+        "Scenes are made by scenes/generate. A ray across the shapes meets two of them whatever their number, so paths "
+        "are equally long in all of them. Making the pool is part of the time. The best capacity is that of the "
+        "highest median, and need not differ from its neighbours. Cache misses are counted where the processor lets "
+        "us, elsewhere simulated: 32 KiB and 1 MiB, in smaller images, with up to 10^5 shapes. Camera rays are in no "
+        "list: they go down in beams.")
+    return summary
+
+
+PICTURES = {"ratio": ratio, "time": time, "lists": lists}
