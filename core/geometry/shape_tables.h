@@ -52,7 +52,7 @@ struct BlockTree {
 /// Children of a node, and primitives of a leaf: as many as fill a register, eight where there is a choice. Single rays
 /// test them all at once, streams and packets one by one against a register of rays.
 template <class Scalar>
-inline constexpr int kTreeWidth = sizeof(Scalar) == 4 ? 8 : Wide<double, stdx::native_simd<double>::size()>::size();
+inline constexpr int kTreeWidth = sizeof(Scalar) == 4 ? 8 : kRegisterBytes / 8;
 
 /// A BlockTree, seen.
 template <class Block, class Scalar, int width>

@@ -1,12 +1,26 @@
-/// What a compiler must be told about a function.
+/// What a compiler must be told about a function or a constant: kernels, and all that they call, are compiled for the
+/// host, and by nvcc for a GPU as well.
 #pragma once
 
-/// Kernels, and all that they call: for the host, and under nvcc for the device as well.
 #ifdef __CUDACC__
 #define RAYPOOL_HOST_DEVICE __host__ __device__
+/// A constant whose address is taken, such as a table or an object that is called.
+#define RAYPOOL_CONSTANT static constexpr __device__
 #else
 #define RAYPOOL_HOST_DEVICE
+#define RAYPOOL_CONSTANT inline constexpr
 #endif
 
-/// The same, and always a part of its caller: for what takes or returns a register.
+/// A function that is always a part of its caller: what takes or returns a register must be.
 #define RAYPOOL_INLINE [[gnu::always_inline]] RAYPOOL_HOST_DEVICE inline
+
+namespace raypool {
+
+/// Of the registers that code is compiled for.
+#ifdef __AVX512F__
+inline constexpr int kRegisterBytes = 64;
+#else
+inline constexpr int kRegisterBytes = 32;
+#endif
+
+}  // namespace raypool

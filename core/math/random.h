@@ -71,8 +71,9 @@ RAYPOOL_INLINE Words<Real> random_words(const Uint32<Real>& pixel, const Uint32<
 /// keyed by what no sample number is: they stay below 2^31. A call by value, and never inlined, so that independent
 /// numbers stay in registers and pay for nothing but the choice.
 template <class Real>
-[[gnu::noinline]] Words<Real> sobol_words(Uint32<Real> pixel, Uint32<Real> sample, Uint32<Real> step,
-                                          RandomPurpose purpose, RandomSeed seed) {
+[[gnu::noinline]] RAYPOOL_HOST_DEVICE Words<Real> sobol_words(Uint32<Real> pixel, Uint32<Real> sample,
+                                                              Uint32<Real> step, RandomPurpose purpose,
+                                                              RandomSeed seed) {
     using U = Uint32<Real>;
     const Words<Real> order = random_words<Real>(pixel, U(0xffffffffU), step, purpose, seed);
     const Words<Real> scramble = random_words<Real>(pixel, U(0xfffffffeU), step, purpose, seed);

@@ -85,12 +85,12 @@ struct CopySign {
 
 }  // namespace detail
 
-inline constexpr detail::Minimum min{};  ///< a < b ? a : b, so b when either is NaN
-inline constexpr detail::Maximum max{};  ///< a > b ? a : b, so b when either is NaN
-inline constexpr detail::SquareRoot sqrt{};
-inline constexpr detail::Floor floor{};
-inline constexpr detail::Absolute abs{};
-inline constexpr detail::CopySign copysign{};  ///< (magnitude, sign)
+RAYPOOL_CONSTANT detail::Minimum min{};  ///< a < b ? a : b, so b when either is NaN
+RAYPOOL_CONSTANT detail::Maximum max{};  ///< a > b ? a : b, so b when either is NaN
+RAYPOOL_CONSTANT detail::SquareRoot sqrt{};
+RAYPOOL_CONSTANT detail::Floor floor{};
+RAYPOOL_CONSTANT detail::Absolute abs{};
+RAYPOOL_CONSTANT detail::CopySign copysign{};  ///< (magnitude, sign)
 
 // Conversion. Values must be in range of the target; callers clamp first.
 

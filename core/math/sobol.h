@@ -37,7 +37,7 @@ constexpr Directions directions(int degree, std::uint32_t coefficients, std::arr
     return out;
 }
 /// Dimensions 1 to 3. Those of dimension 0 are 1, 2, 4, ...: reversed, a point is its index.
-inline constexpr std::array<Directions, kDimensions - 1> kDirections{directions(1, 0, {1}), directions(2, 1, {1, 3}),
+RAYPOOL_CONSTANT std::array<Directions, kDimensions - 1> kDirections{directions(1, 0, {1}), directions(2, 1, {1, 3}),
                                                                      directions(3, 1, {1, 3, 1})};
 
 template <class U>

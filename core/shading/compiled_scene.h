@@ -139,7 +139,7 @@ struct SceneView : ShapeView<Scalar> {
     }
 
     /// The id of the first quad or plane.
-    [[nodiscard]] std::size_t first_planar() const { return surfaces.size() - planars.size(); }
+    [[nodiscard]] RAYPOOL_HOST_DEVICE std::size_t first_planar() const { return surfaces.size() - planars.size(); }
     [[nodiscard]] std::int64_t pixel_count() const { return width * height; }
 };
 

@@ -74,7 +74,7 @@ struct ImageRepeat {
 
 /// Bilinear lookup, v upward. One lane at a time: images are rare, and their memory is the cost.
 template <class Scalar>
-Vec3<Scalar> image_colour(const ImageView<Scalar>& image, Scalar u, Scalar v, ImageRepeat repeat) {
+RAYPOOL_HOST_DEVICE Vec3<Scalar> image_colour(const ImageView<Scalar>& image, Scalar u, Scalar v, ImageRepeat repeat) {
     struct Place {
         std::int32_t first, second;  // texels, ...
         Scalar weight;               // ... of the second
