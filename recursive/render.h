@@ -85,15 +85,14 @@ class LineTracer {
     virtual void report(ThreadReport& work, SampleStatistics& statistics) const = 0;
 };
 
-template <Form form, Features features, class Scalar, class Work, Splitting splitting, Rules rules,
-          class Hits = SceneTrees>
+template <Form form, Features features, class Scalar, class Work, Splitting splitting, Rules rules>
 class alignas(64) CompiledLineTracer final : public LineTracer {
   public:
     CompiledLineTracer(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer,
-                       const Hits& hits = {})
+                       const Work& work = {})
         : width_(scene.width),
           framebuffer_(framebuffer),
-          tracer_(scene, settings, framebuffer.fixed_point(), hits),
+          tracer_(scene, settings, framebuffer.fixed_point(), work),
           cost_(settings.cost_image) {}
 
     void trace(const LinePixels& line, std::int64_t first, std::int64_t end, Addition addition,
@@ -136,7 +135,7 @@ class alignas(64) CompiledLineTracer final : public LineTracer {
 
     std::int64_t width_;
     Framebuffer& framebuffer_;
-    Tracer<features, Scalar, Work, splitting, rules, Hits> tracer_;
+    Tracer<features, Scalar, Work, splitting, rules> tracer_;
     PixelCost cost_;
 };
 

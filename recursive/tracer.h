@@ -38,28 +38,20 @@ constexpr bool are_plain(const ImageSettings& settings) {
     return settings.sampler == Sampler::Independent && !settings.roulette;
 }
 
-/// How a tracer finds the closest hit: by the trees of the scene. bench/peers/ has another way.
-struct SceneTrees {
-    template <Features features, class Scalar, class Work>
-    RAYPOOL_INLINE Hit<Scalar> closest(const SceneView<Scalar>& scene, const Ray<Scalar>& ray,
-                                       std::int32_t leaving_id, Work& work) const {
-        return closest_hit<features>(scene, ray, leaving_id, work);
-    }
-};
-
-/// Traces paths for one thread. `Work` counts box and primitive tests, or nothing.
-template <Features features, class Scalar, class Work, Splitting splitting, Rules rules = Rules::Any,
-          class Hits = SceneTrees>
+/// Traces paths for one thread. `Work` counts box and primitive tests, or nothing; a `Work` with a closest_hit() of its
+/// own finds hits in another way (bench/peers/).
+template <Features features, class Scalar, class Work, Splitting splitting, Rules rules = Rules::Any>
 class Tracer {
   public:
-    Tracer(const SceneView<Scalar>& scene, const ImageSettings& settings, const FixedPoint& fixed, const Hits& hits = {})
+    Tracer(const SceneView<Scalar>& scene, const ImageSettings& settings, const FixedPoint& fixed,
+           const Work& work = {})
         : scene_(scene),
-          hits_(hits),
           seed_(random_seed(settings.seed, settings.sampler)),
           depth_(settings.depth),
           split_depth_(settings.split_depth),
           roulette_(settings.roulette),
-          converter_(fixed) {}
+          converter_(fixed),
+          work_(work) {}
 
     /// One sample, whole.
     template <Form form>
@@ -122,7 +114,7 @@ class Tracer {
         if (path_step::bounce(path.step) == static_cast<std::uint32_t>(depth_)) return Next::End;
         ++segments_;
         work_.begin_segment();
-        const Hit<Scalar> hit = hits_.template closest<features>(scene_, path.ray, path.leaving_id, work_);
+        const Hit<Scalar> hit = closest_hit<features>(scene_, path.ray, path.leaving_id, work_);
         if (hit.primitive_id == kNoPrimitive) {
             return finish(path.throughput.cwiseProduct(sky_radiance<Scalar>(scene_.sky, path.ray.direction)));
         }
@@ -162,7 +154,6 @@ class Tracer {
     }
 
     const SceneView<Scalar>& scene_;
-    [[no_unique_address]] Hits hits_;
     RandomSeed seed_;
     std::int32_t depth_;
     int split_depth_;

@@ -9,20 +9,9 @@ namespace raypool::peers {
 
 namespace {
 
-/// How the tracer of recursive/ finds the closest hit here.
-struct EmbreeHits {
-    const EmbreeScene* embree;
-
-    template <Features features, class Scalar, class Work>
-    RAYPOOL_INLINE Hit<Scalar> closest(const SceneView<Scalar>& scene, const Ray<Scalar>& ray, std::int32_t leaving_id,
-                                       Work&) const {
-        return closest_hit<features>(*embree, scene, ray, leaving_id);
-    }
-};
-
 template <Features features, recursive::Rules rules>
-using SingleTracer = recursive::CompiledLineTracer<recursive::Form::Iterative, features, float, NoTestCount,
-                                                   Splitting::Off, rules, EmbreeHits>;
+using SingleTracer =
+    recursive::CompiledLineTracer<recursive::Form::Iterative, features, float, EmbreeSearch, Splitting::Off, rules>;
 
 using MakeTracer = decltype(recursive::TracerMaker<float>::make);
 
@@ -30,7 +19,8 @@ template <Features features, recursive::Rules rules>
 MakeTracer single_tracers(const CompiledScene<float>& scene) {
     const auto embree = std::make_shared<EmbreeScene>(scene, ShapeFunctions::make<features, float>());
     return [embree](const CompiledScene<float>& of, const RenderSettings& settings, Framebuffer& framebuffer) {
-        return std::make_unique<SingleTracer<features, rules>>(of, settings, framebuffer, EmbreeHits{embree.get()});
+        return std::make_unique<SingleTracer<features, rules>>(of, settings, framebuffer,
+                                                               EmbreeSearch{{}, embree.get()});
     };
 }
 

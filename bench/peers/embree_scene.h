@@ -124,10 +124,15 @@ class EmbreeScene {
     std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>> scene_;
 };
 
+/// What the tracer of recursive/ has for a count of tests here.
+struct EmbreeSearch : NoTestCount {
+    const EmbreeScene* embree = nullptr;
+};
+
 /// The closest hit of one ray.
 template <Features features>
-[[gnu::noinline]] Hit<float> closest_hit(const EmbreeScene& embree, const SceneView<float>& scene,
-                                         const Ray<float>& ray, std::int32_t leaving_id) {
+[[gnu::noinline]] Hit<float> closest_hit(const SceneView<float>& scene, const Ray<float>& ray, std::int32_t leaving_id,
+                                         EmbreeSearch& search) {
     using Shapes = Wide<float, kTreeWidth<float>>;
     Query<float> query{{}, {ray, ray_inverse<float>(ray.direction), leaving_id}};
     const SpreadRay<Shapes> spread(ray, query.rays.inverse, leaving_id);
@@ -137,7 +142,7 @@ template <Features features>
     };
     test_all(scene.large_spheres);
     if constexpr (features.planar) test_all(scene.planes);
-    return embree.closest<float>(query, hit, -1);
+    return search.embree->closest<float>(query, hit, -1);
 }
 
 /// The closest hits of the rays in `is_active`; those of the others mean nothing.

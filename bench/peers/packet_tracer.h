@@ -95,21 +95,24 @@ class alignas(64) PacketTracer final : public recursive::LineTracer {
         if (const unsigned misses = active & ~hits; misses != 0)
             contribute(throughput_.cwiseProduct(sky_radiance<Real>(scene_.sky, ray_.direction)), misses);
 
+        is_alive_ = is_alive_ && is_hit;
         const Uint step = load<Uint>(step_);
+        const Uint next_step = step + Uint(1U);
+        next_step.copy_to(step_, stdx::vector_aligned);
+        if (hits == 0) return;  // and there may be nothing to hit
+
         const Int<Real> id = select(is_hit, hit.primitive_id, Int<Real>(0));
         const Scattered<Real> out = scatter<features, Real>(
             scene_, ray_, hit.t, id, throughput_, {load<Uint>(pixel_), load<Uint>(sample_)}, step, seed_, 0, roulette_);
         if constexpr (features.emissive) {
             if (const unsigned ends = mask_bits(out.is_emitter) & hits; ends != 0) contribute(out.throughput, ends);
         }
-        const Uint next_step = step + Uint(1U);
-        next_step.copy_to(step_, stdx::vector_aligned);
         ray_.origin = out.start.origin;
         ray_.direction = out.direction;
         throughput_ = out.throughput;
         leaving_id_ = out.start.leaving_id;
         const Mask<Real> is_deepest = from_uint32<Real>(next_step) >= Real(static_cast<float>(depth_));
-        is_alive_ = is_alive_ && is_hit && out.is_alive && !is_deepest;
+        is_alive_ = is_alive_ && out.is_alive && !is_deepest;
     }
 
     /// Adds the radiance that paths end with, of the lanes in `bits`.

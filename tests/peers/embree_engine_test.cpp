@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -93,19 +95,19 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, EmbreeEngineOfScene, testing::ValuesIn(scene_n
                          [](const auto& info) { return info.param; });
 
 /// Finds each hit by our trees and by Embree, and counts those that differ.
-struct BothHits {
-    const peers::EmbreeScene* embree;
-    std::int64_t* differing;
-
-    template <Features features, class Scalar, class Work>
-    Hit<Scalar> closest(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray, std::int32_t leaving_id,
-                        Work& work) const {
-        const Hit<Scalar> ours = closest_hit<features>(scene, ray, leaving_id, work);
-        const Hit<Scalar> theirs = peers::closest_hit<features>(*embree, scene, ray, leaving_id);
-        if (ours.t != theirs.t || ours.primitive_id != theirs.primitive_id) ++*differing;
-        return ours;
-    }
+struct BothSearches : peers::EmbreeSearch {
+    std::int64_t differing = 0;
 };
+
+template <Features features>
+Hit<float> closest_hit(const CompiledScene<float>& scene, const Ray<float>& ray, std::int32_t leaving_id,
+                       BothSearches& search) {
+    NoTestCount nothing;
+    const Hit<float> ours = raypool::closest_hit<features>(scene, ray, leaving_id, nothing);
+    const Hit<float> theirs = peers::closest_hit<features>(scene, ray, leaving_id, search);
+    if (ours.t != theirs.t || ours.primitive_id != theirs.primitive_id) ++search.differing;
+    return ours;
+}
 
 struct HitCount {
     std::int64_t differing = 0;
@@ -115,14 +117,14 @@ struct HitCount {
 HitCount count_hits(const Scene& described, std::int64_t spp) {
     const CompiledScene<float> scene = compile<float>(described);
     const peers::EmbreeScene embree(scene, peers::ShapeFunctions::make<kEverything, float>());
-    HitCount count;
-    recursive::Tracer<kEverything, float, NoTestCount, Splitting::Off, recursive::Rules::Any, BothHits> tracer(
-        scene, {}, FixedPoint::make(spp, scene.max_radiance), {&embree, &count.differing});
+    BothSearches search;
+    search.embree = &embree;
+    recursive::Tracer<kEverything, float, BothSearches, Splitting::Off> tracer(
+        scene, {}, FixedPoint::make(spp, scene.max_radiance), search);
     for (std::int64_t y = 0; y < scene.height; ++y)
         for (std::int64_t x = 0; x < scene.width; ++x)
             for (std::int64_t s = 0; s < spp; ++s) tracer.sample<recursive::Form::Iterative>(x, y, s);
-    count.all = tracer.segments();
-    return count;
+    return {tracer.work().differing, tracer.segments()};
 }
 
 /// Small spheres, still or in motion, or squares turned at random, strewn in a cube of edge 20, seen from `distance`.
