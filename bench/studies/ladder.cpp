@@ -1,7 +1,6 @@
 // From the paper's tracer to the fastest pool, a rung at a time: how fast each is, and where its time goes.
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -22,9 +21,8 @@ namespace raypool::studies {
 
 namespace {
 
-/// Where time goes, as columns; scripts/analysis/ladder.py stacks them.
-constexpr std::array<const char*, 9> kParts{"generate_s", "intersect_s", "shade_s",   "sort_s", "accumulate_s",
-                                            "traffic_s",  "append_s",    "barrier_s", "end_s"};
+/// Columns of where time goes, from generate_s on; scripts/analysis/ladder.py stacks them.
+constexpr std::size_t kPartCount = 9;
 
 /// Seconds of a stage, all threads and rounds.
 double stage_s(const RenderReport& report, Stage stage) {
@@ -33,7 +31,7 @@ double stage_s(const RenderReport& report, Stage stage) {
     return sum;
 }
 
-/// What the columns of kParts are for a pool whose rounds were logged.
+/// These columns of a pool whose rounds were logged.
 Row parts_of_pool(const RenderReport& report, const Features& features, const wavefront::PoolSettings& pool) {
     double records_in = 0;
     double records_out = 0;
@@ -62,7 +60,7 @@ Row parts_of_pool(const RenderReport& report, const Features& features, const wa
 
 /// A run whose time is not split.
 Row no_parts() {
-    return Row(kParts.size(), nullptr);
+    return Row(kPartCount, nullptr);
 }
 
 Case rate_case(const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,

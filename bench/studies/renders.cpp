@@ -122,10 +122,6 @@ std::vector<int> one_and_all(int most) {
     return most == 1 ? std::vector{1} : std::vector{1, most};
 }
 
-std::string threads_text(int threads) {
-    return fmt::format("{} thread{}", threads, threads == 1 ? "" : "s");
-}
-
 int core_count() {
     return std::min(omp_get_num_procs(), omp_get_thread_limit());
 }

@@ -63,8 +63,6 @@ Case render_case(std::string id, const NamedEngine& engine, const std::shared_pt
 std::vector<int> thread_counts(int most);
 /// 1 and `most`.
 std::vector<int> one_and_all(int most);
-/// "1 thread", "2 threads"
-std::string threads_text(int threads);
 /// Threads that can run at once here.
 int core_count();
 
