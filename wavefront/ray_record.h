@@ -59,7 +59,7 @@ struct LaneOf<V> {
 /// Room after the last record, so that a whole register can be loaded and stored anywhere.
 inline constexpr std::size_t kPadding = 16;
 
-/// The needs that a record shows: scenes that agree in them have one kind of record.
+/// The features that a record shows: scenes that agree in them have one kind of record.
 constexpr Features record_features(const Features& features) {
     Features shown;
     shown.motion = features.motion;

@@ -16,7 +16,7 @@ namespace raypool::wavefront {
 template <class Scalar>
 using WideReal = Wide<Scalar, stdx::native_simd<Scalar>::size()>;
 
-/// Makes Stages<needs, Real, Work, splitting>. A file that instantiates it includes compiled_stages.h.
+/// Makes Stages<features, Real, Work, splitting>. A file that instantiates it includes compiled_stages.h.
 template <Features features, class Real, class Work, Splitting splitting>
 StagesMaker<record_features(features), ScalarOf<Real>> stages_maker();
 
@@ -32,7 +32,7 @@ std::unique_ptr<RenderSession> begin(const CompiledScene<ScalarOf<Real>>& scene,
                                                                     stages_maker<features, Real, Work, splitting>());
 }
 
-/// Picks the code compiled for what the scene needs. One code counts and splits, for all needs.
+/// Picks the code compiled for the features of the scene. One code counts and splits, for all features.
 template <class Real>
 std::unique_ptr<RenderSession> begin(const CompiledScene<ScalarOf<Real>>& scene, const RenderSettings& settings,
                                      const PoolSettings& pool, Framebuffer& framebuffer) {

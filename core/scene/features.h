@@ -1,4 +1,4 @@
-/// What a scene needs: the features that its kernels must have and its ray records must carry.
+/// The features of a scene: what its kernels must have and its ray records must carry.
 ///
 /// Derived from the scene once, by scene_features(). A kernel takes a Features as a template parameter and leaves out
 /// what is false; for a scene that does not need a feature, leaving it out changes no bit of the image.
@@ -45,7 +45,7 @@ inline constexpr std::array<FeatureName, 9> kFeatureNames{{{"motion", &Features:
                                                            {"checker", &Features::checker},
                                                            {"uv", &Features::uv}}};
 
-/// True when code compiled for `a` can render whatever needs `b`.
+/// True when code compiled for `a` can render a scene with features `b`.
 constexpr bool covers(const Features& a, const Features& b) {
     for (const FeatureName& feature : kFeatureNames)
         if (b.*feature.member && !(a.*feature.member)) return false;
@@ -85,8 +85,8 @@ constexpr std::size_t compiled_features_index(const Features& features, std::siz
 template <class Scalar>
 inline constexpr std::size_t kFirstCompiledFeatures = sizeof(Scalar) > sizeof(float) ? 1 : 0;
 
-/// Calls function.template operator()<compiled needs>() with the first compiled set, from the i-th on, that covers
-/// `needs`.
+/// Calls function.template operator()<compiled features>() with the first compiled set, from the i-th on, that covers
+/// `features`.
 template <std::size_t i = 0, class Function>
 auto dispatch_features(const Features& features, Function&& function) {
     if constexpr (i + 1 < kCompiledFeatures.size()) {
