@@ -23,38 +23,31 @@ namespace detail {
 template <class S>
 using Maker = std::conditional_t<sizeof(S) == 4, double, S>;
 
-/// The first coefficients of series in x^2, as many as the precision of the scalar needs.
+/// Coefficient k of the series of sine and cosine in x^2, and of that of the arc tangent.
 template <class S>
-struct SineSeries {
-    static constexpr int kTerms = sizeof(S) == 4 ? 5 : sizeof(S) == 8 ? 9 : 11;  ///< for |x| <= pi / 4
-    S sin[kTerms];
-    S cos[kTerms];
-};
+consteval S sine_coefficient(int k) {
+    Maker<S> factorial = 1;
+    for (int i = 2; i <= 2 * k + 1; ++i) factorial *= i;
+    return static_cast<S>((k % 2 == 0 ? 1 : -1) / factorial);
+}
 template <class S>
-consteval SineSeries<S> sine_series() {
-    SineSeries<S> series{};
-    Maker<S> even = 1;  // (2k)!
-    for (int k = 0; k < SineSeries<S>::kTerms; ++k) {
-        const Maker<S> sign = k % 2 == 0 ? 1 : -1;
-        const Maker<S> odd = even * (2 * k + 1);
-        series.sin[k] = static_cast<S>(sign / odd);
-        series.cos[k] = static_cast<S>(sign / even);
-        even = odd * (2 * k + 2);
-    }
-    return series;
+consteval S cosine_coefficient(int k) {
+    Maker<S> factorial = 1;
+    for (int i = 2; i <= 2 * k; ++i) factorial *= i;
+    return static_cast<S>((k % 2 == 0 ? 1 : -1) / factorial);
+}
+template <class S>
+consteval S arctangent_coefficient(int k) {
+    return static_cast<S>((k % 2 == 0 ? 1 : -1) / static_cast<Maker<S>>(2 * k + 1));
 }
 
-template <class S>
-struct ArctangentSeries {
-    static constexpr int kTerms = sizeof(S) == 4 ? 6 : 13;
-    S atan[kTerms];
-};
-template <class S>
-consteval ArctangentSeries<S> arctangent_series() {
-    ArctangentSeries<S> series{};
-    for (int k = 0; k < ArctangentSeries<S>::kTerms; ++k)
-        series.atan[k] = static_cast<S>((k % 2 == 0 ? 1 : -1) / static_cast<Maker<S>>(2 * k + 1));
-    return series;
+/// Calls step.template operator()<k>() for k from terms - 1 down to 0: each coefficient is then a constant of the code.
+template <int terms, class Step>
+RAYPOOL_INLINE void down_to_zero(Step step) {
+    if constexpr (terms > 0) {
+        step.template operator()<terms - 1>();
+        down_to_zero<terms - 1>(step);
+    }
 }
 
 template <class S>
@@ -74,12 +67,13 @@ RAYPOOL_INLINE SinCos<Real> sincos_of_turn(const Real& u) {
     const Real x = nmad<Real>(Real(0.25F), quarter, u) * Real(detail::kRadiansOfTurn<S>);
     const Real x2 = x * x;
 
-    constexpr detail::SineSeries<S> kSeries = detail::sine_series<S>();
+    // As many terms as the precision of the scalar needs for |x| <= pi / 4.
+    constexpr int kTerms = sizeof(S) == 4 ? 5 : sizeof(S) == 8 ? 9 : 11;
     Real s(0), c(0);
-    for (int k = kSeries.kTerms - 1; k >= 0; --k) {
-        s = mad<Real>(s, x2, Real(kSeries.sin[k]));
-        c = mad<Real>(c, x2, Real(kSeries.cos[k]));
-    }
+    detail::down_to_zero<kTerms>([&]<int k>() {
+        s = mad<Real>(s, x2, Real(detail::sine_coefficient<S>(k)));
+        c = mad<Real>(c, x2, Real(detail::cosine_coefficient<S>(k)));
+    });
     s = s * x;
 
     // quarter is 0..4: swap for odd ones, then give the signs of the quadrant.
@@ -106,9 +100,10 @@ RAYPOOL_INLINE Real turn_of_angle(const Real& y, const Real& x) {
     Real r = ratio;
     for (int i = 0; i < 2; ++i) r = r / (Real(1) + sqrt(mad<Real>(r, r, Real(1))));
     const Real r2 = r * r;
-    constexpr detail::ArctangentSeries<S> kSeries = detail::arctangent_series<S>();
+    constexpr int kTerms = sizeof(S) == 4 ? 6 : 13;
     Real sum(0);
-    for (int k = kSeries.kTerms - 1; k >= 0; --k) sum = mad<Real>(sum, r2, Real(kSeries.atan[k]));
+    detail::down_to_zero<kTerms>(
+        [&]<int k>() { sum = mad<Real>(sum, r2, Real(detail::arctangent_coefficient<S>(k))); });
     const Real eighth = r * sum * Real(detail::kTurnsOfQuarter<S>);
 
     const Real quarter = select(is_steep, Real(0.25F) - eighth, eighth);

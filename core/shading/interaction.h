@@ -144,7 +144,8 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const SceneView<ScalarOf<Real>>& scene,
 /// A hit as its material sees it.
 template <class Real>
 struct Interaction {
-    Real row[SurfaceRow<ScalarOf<Real>>::kColumns];  ///< of the primitive's SurfaceRow, transposed
+    Real parameter;  ///< fuzz of metal, index of refraction of glass
+    Real radius;     ///< SurfaceRow::kRadius
     SurfacePoint<Real> point;
     Vec3<Real> colour;      ///< albedo, or radiance of an emitter; without meaning for glass
     Mask<Real> is_emitter;  ///< of the materials none, or one of these three, where not diffuse
@@ -152,8 +153,6 @@ struct Interaction {
     Mask<Real> is_metal;
 
     [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_diffuse() const { return !(is_glass || is_metal || is_emitter); }
-    /// Fuzz of metal, index of refraction of glass.
-    [[nodiscard]] RAYPOOL_INLINE const Real& parameter() const { return row[SurfaceRow<ScalarOf<Real>>::kParameter]; }
 };
 
 /// Of primitive `primitive_id` (valid in every lane, also those the caller ignores), at distance t.
@@ -162,17 +161,20 @@ RAYPOOL_INLINE Interaction<Real> interaction_at(const SceneView<ScalarOf<Real>>&
                                                 const Real& t, const Int<Real>& primitive_id) {
     using Row = SurfaceRow<ScalarOf<Real>>;
     Interaction<Real> met;
-    load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, primitive_id, met.row);
-    const SurfaceCode<Int<Real>> code{bits_of<Real>(met.row[Row::kCode])};
+    Real row[Row::kColumns];
+    load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, primitive_id, row);
+    met.parameter = row[Row::kParameter];
+    met.radius = row[Row::kRadius];
+    const SurfaceCode<Int<Real>> code{bits_of<Real>(row[Row::kCode])};
     const Int<Real> material = code.material();
     const auto is_material = [&](Material::Kind kind) {
         return as_mask<Real>(material == Int<Real>(static_cast<int>(kind)));
     };
-    met.point = surface_point<features, Real>(ray, t, met.row);
+    met.point = surface_point<features, Real>(ray, t, row);
     met.is_emitter = features.emissive ? is_material(Material::Kind::Emissive) : Mask<Real>(false);
     met.is_glass = features.dielectric ? is_material(Material::Kind::Dielectric) : Mask<Real>(false);
     met.is_metal = features.metal ? is_material(Material::Kind::Metal) : Mask<Real>(false);
-    met.colour = surface_colour<features, Real>(scene, met.point, primitive_id, met.row, code, !met.is_glass);
+    met.colour = surface_colour<features, Real>(scene, met.point, primitive_id, row, code, !met.is_glass);
     return met;
 }
 
@@ -186,8 +188,7 @@ struct RayStart {
 template <Features features, class Real>
 RAYPOOL_INLINE RayStart<Real> ray_start(const Interaction<Real>& met, const Int<Real>& primitive_id) {
     RayStart<Real> start{met.point.position, primitive_id};
-    if constexpr (features.planar)
-        start.leaving_id = PlanarMark<Real>::group(met.row[SurfaceRow<ScalarOf<Real>>::kRadius], primitive_id);
+    if constexpr (features.planar) start.leaving_id = PlanarMark<Real>::group(met.radius, primitive_id);
     return start;
 }
 

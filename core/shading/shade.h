@@ -44,6 +44,10 @@ RAYPOOL_INLINE Scattered<Real> scatter(const SceneView<ScalarOf<Real>>& scene, c
                                        int split_depth = 0, bool roulette = false) {
     const Interaction<Real> met = interaction_at<features, Real>(scene, ray, t, primitive_id);
     const std::array<Real, 4> random = random_block<Real>(key, step, RandomPurpose::Scatter, seed);
+    Scattered<Real> out;
+    out.start = ray_start<features, Real>(met, primitive_id);
+    out.is_emitter = met.is_emitter;
+    for (int i = 0; i < 3; ++i) out.throughput[i] = select(met.is_glass, throughput[i], throughput[i] * met.colour[i]);
     Mask<Real> may_split(false);
     if constexpr (splitting == Splitting::On) {
         const Real most_branches(static_cast<ScalarOf<Real>>((1 << split_depth) - 1));
@@ -51,11 +55,7 @@ RAYPOOL_INLINE Scattered<Real> scatter(const SceneView<ScalarOf<Real>>& scene, c
     }
     const BsdfSample<Real> sample = sample_bsdf<features, Real, splitting>(met, ray.direction, random, may_split);
 
-    Scattered<Real> out;
-    out.start = ray_start<features, Real>(met, primitive_id);
     out.direction = sample.direction;
-    out.is_emitter = met.is_emitter;
-    for (int i = 0; i < 3; ++i) out.throughput[i] = select(met.is_glass, throughput[i], throughput[i] * met.colour[i]);
     if constexpr (splitting == Splitting::On) {
         out.is_split = sample.is_split;
         out.reflected_direction = sample.reflected_direction;

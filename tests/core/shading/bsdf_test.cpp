@@ -17,7 +17,7 @@ enum class Kind : std::uint8_t { Diffuse, Emitter, Glass, Metal };
 /// A surface of one material, its normal up, met from above.
 Interaction<double> surface_of(Kind kind, double parameter = 0) {
     Interaction<double> met{};
-    met.row[SurfaceRow<double>::kParameter] = parameter;
+    met.parameter = parameter;
     met.point.normal = met.point.outward = {0, 0, 1};
     met.point.is_front = true;
     met.colour = {0.9, 0.5, 0.1};
