@@ -23,23 +23,23 @@ namespace detail {
 template <class S>
 using Maker = std::conditional_t<sizeof(S) == 4, double, S>;
 
-/// Coefficient k of the series of sine and cosine in x^2, and of that of the arc tangent.
 template <class S>
-consteval S sine_coefficient(int k) {
-    Maker<S> factorial = 1;
-    for (int i = 2; i <= 2 * k + 1; ++i) factorial *= i;
-    return static_cast<S>((k % 2 == 0 ? 1 : -1) / factorial);
+constexpr S alternating(int k, Maker<S> divisor) {
+    return static_cast<S>((k % 2 == 0 ? 1 : -1) / divisor);
 }
 template <class S>
-consteval S cosine_coefficient(int k) {
-    Maker<S> factorial = 1;
-    for (int i = 2; i <= 2 * k; ++i) factorial *= i;
-    return static_cast<S>((k % 2 == 0 ? 1 : -1) / factorial);
+constexpr Maker<S> factorial(int n) {
+    Maker<S> product = 1;
+    for (int i = 2; i <= n; ++i) product *= i;
+    return product;
 }
-template <class S>
-consteval S arctangent_coefficient(int k) {
-    return static_cast<S>((k % 2 == 0 ? 1 : -1) / static_cast<Maker<S>>(2 * k + 1));
-}
+/// Coefficient k of the series in x^2 of sine, cosine and arc tangent.
+template <class S, int k>
+inline constexpr S kSine = alternating<S>(k, factorial<S>(2 * k + 1));
+template <class S, int k>
+inline constexpr S kCosine = alternating<S>(k, factorial<S>(2 * k));
+template <class S, int k>
+inline constexpr S kArctangent = alternating<S>(k, 2 * k + 1);
 
 /// Calls step.template operator()<k>() for k from terms - 1 down to 0: each coefficient is then a constant of the code.
 template <int terms, class Step>
@@ -71,8 +71,8 @@ RAYPOOL_INLINE SinCos<Real> sincos_of_turn(const Real& u) {
     constexpr int kTerms = sizeof(S) == 4 ? 5 : sizeof(S) == 8 ? 9 : 11;
     Real s(0), c(0);
     detail::down_to_zero<kTerms>([&]<int k>() {
-        s = mad<Real>(s, x2, Real(detail::sine_coefficient<S>(k)));
-        c = mad<Real>(c, x2, Real(detail::cosine_coefficient<S>(k)));
+        s = mad<Real>(s, x2, Real(detail::kSine<S, k>));
+        c = mad<Real>(c, x2, Real(detail::kCosine<S, k>));
     });
     s = s * x;
 
@@ -102,8 +102,7 @@ RAYPOOL_INLINE Real turn_of_angle(const Real& y, const Real& x) {
     const Real r2 = r * r;
     constexpr int kTerms = sizeof(S) == 4 ? 6 : 13;
     Real sum(0);
-    detail::down_to_zero<kTerms>(
-        [&]<int k>() { sum = mad<Real>(sum, r2, Real(detail::arctangent_coefficient<S>(k))); });
+    detail::down_to_zero<kTerms>([&]<int k>() { sum = mad<Real>(sum, r2, Real(detail::kArctangent<S, k>)); });
     const Real eighth = r * sum * Real(detail::kTurnsOfQuarter<S>);
 
     const Real quarter = select(is_steep, Real(0.25F) - eighth, eighth);
