@@ -6,9 +6,12 @@
 #define RAYPOOL_HOST_DEVICE __host__ __device__
 /// A constant whose address is taken, such as a table or an object that is called.
 #define RAYPOOL_CONSTANT static constexpr __device__
+/// Before a loop whose constants must be computed by the compiler; those of the host do it without being told.
+#define RAYPOOL_UNROLL _Pragma("unroll")
 #else
 #define RAYPOOL_HOST_DEVICE
 #define RAYPOOL_CONSTANT inline constexpr
+#define RAYPOOL_UNROLL
 #endif
 
 /// A function that is always a part of its caller: what takes or returns a register must be.

@@ -18,44 +18,9 @@ struct SinCos {
 };
 
 namespace detail {
-
-/// What coefficients are made in before they are rounded to a scalar: no wider than a GPU has.
+/// What coefficients of series are made in before they are rounded to a scalar: no wider than a GPU has.
 template <class S>
-using Maker = std::conditional_t<sizeof(S) == 4, double, S>;
-
-template <class S>
-constexpr S alternating(int k, Maker<S> divisor) {
-    return static_cast<S>((k % 2 == 0 ? 1 : -1) / divisor);
-}
-template <class S>
-constexpr Maker<S> factorial(int n) {
-    Maker<S> product = 1;
-    for (int i = 2; i <= n; ++i) product *= i;
-    return product;
-}
-/// Coefficient k of the series in x^2 of sine, cosine and arc tangent.
-template <class S, int k>
-inline constexpr S kSine = alternating<S>(k, factorial<S>(2 * k + 1));
-template <class S, int k>
-inline constexpr S kCosine = alternating<S>(k, factorial<S>(2 * k));
-template <class S, int k>
-inline constexpr S kArctangent = alternating<S>(k, 2 * k + 1);
-
-/// Calls step.template operator()<k>() for k from terms - 1 down to 0: each coefficient is then a constant of the code.
-template <int terms, class Step>
-RAYPOOL_INLINE void down_to_zero(Step step) {
-    if constexpr (terms > 0) {
-        step.template operator()<terms - 1>();
-        down_to_zero<terms - 1>(step);
-    }
-}
-
-template <class S>
-inline constexpr S kRadiansOfTurn = static_cast<S>(2 * std::numbers::pi_v<Maker<S>>);
-/// Of an angle that was halved twice.
-template <class S>
-inline constexpr S kTurnsOfQuarter = static_cast<S>(4 / (2 * std::numbers::pi_v<Maker<S>>));
-
+using CoefficientMaker = std::conditional_t<sizeof(S) == 4, double, S>;
 }  // namespace detail
 
 /// Sine and cosine of 2 pi u for u in [0, 1). The nearest quarter turn is taken off exactly; what is left, within an
@@ -64,16 +29,21 @@ template <class Real>
 RAYPOOL_INLINE SinCos<Real> sincos_of_turn(const Real& u) {
     const Real quarter = floor(mad<Real>(Real(4), u, Real(0.5F)));
     using S = ScalarOf<Real>;
-    const Real x = nmad<Real>(Real(0.25F), quarter, u) * Real(detail::kRadiansOfTurn<S>);
+    using Maker = detail::CoefficientMaker<S>;
+    const Real x = nmad<Real>(Real(0.25F), quarter, u) * Real(S(2 * std::numbers::pi_v<Maker>));
     const Real x2 = x * x;
 
-    // As many terms as the precision of the scalar needs for |x| <= pi / 4.
+    // Taylor coefficients, as many as the precision of the scalar needs for |x| <= pi / 4.
     constexpr int kTerms = sizeof(S) == 4 ? 5 : sizeof(S) == 8 ? 9 : 11;
     Real s(0), c(0);
-    detail::down_to_zero<kTerms>([&]<int k>() {
-        s = mad<Real>(s, x2, Real(detail::kSine<S, k>));
-        c = mad<Real>(c, x2, Real(detail::kCosine<S, k>));
-    });
+    RAYPOOL_UNROLL for (int k = kTerms - 1; k >= 0; --k) {
+        Maker odd = 1, even = 1;  // (2k + 1)! and (2k)!
+        RAYPOOL_UNROLL for (int i = 2; i <= 2 * k + 1; ++i) odd *= i;
+        RAYPOOL_UNROLL for (int i = 2; i <= 2 * k; ++i) even *= i;
+        const int sign = k % 2 == 0 ? 1 : -1;
+        s = mad<Real>(s, x2, Real(S(sign / odd)));
+        c = mad<Real>(c, x2, Real(S(sign / even)));
+    }
     s = s * x;
 
     // quarter is 0..4: swap for odd ones, then give the signs of the quadrant.
@@ -89,6 +59,7 @@ RAYPOOL_INLINE SinCos<Real> sincos_of_turn(const Real& u) {
 template <class Real>
 RAYPOOL_INLINE Real turn_of_angle(const Real& y, const Real& x) {
     using S = ScalarOf<Real>;
+    using Maker = detail::CoefficientMaker<S>;
     const Real ax = abs(x);
     const Real ay = abs(y);
     const Mask<Real> is_steep = ay > ax;
@@ -102,8 +73,11 @@ RAYPOOL_INLINE Real turn_of_angle(const Real& y, const Real& x) {
     const Real r2 = r * r;
     constexpr int kTerms = sizeof(S) == 4 ? 6 : 13;
     Real sum(0);
-    detail::down_to_zero<kTerms>([&]<int k>() { sum = mad<Real>(sum, r2, Real(detail::kArctangent<S, k>)); });
-    const Real eighth = r * sum * Real(detail::kTurnsOfQuarter<S>);
+    RAYPOOL_UNROLL for (int k = kTerms - 1; k >= 0; --k) {
+        const int sign = k % 2 == 0 ? 1 : -1;
+        sum = mad<Real>(sum, r2, Real(S(sign / static_cast<Maker>(2 * k + 1))));
+    }
+    const Real eighth = r * sum * Real(S(4 / (2 * std::numbers::pi_v<Maker>)));
 
     const Real quarter = select(is_steep, Real(0.25F) - eighth, eighth);
     const Real half = select(x < Real(0), Real(0.5F) - quarter, quarter);

@@ -8,7 +8,7 @@ sys.path[0] = str(Path(__file__).resolve().parent.parent)  # where this folder i
 try:
     from analysis.command import main
 except ModuleNotFoundError:
-    if sys.argv[1:2] == ["trace"]:  # called by hand, where nobody else says which
+    if sys.argv[1:2] == ["trace"]:  # called by hand: the error must name the package
         raise
     sys.exit(PACKAGE_IS_MISSING)
 main()
