@@ -43,8 +43,8 @@ struct alignas(64) PlanarBlock {
 template <class Block, class Scalar, int width>
 struct BlockTree {
     std::vector<WideNode<Scalar, width>> nodes;  ///< their bounds hold over all times
-    std::vector<NodeMotion<Scalar, width>>
-        motion[3];  ///< by axis, then by node; empty where no shape moves along the axis
+    /// By axis, then by node; empty where no shape moves along the axis.
+    std::vector<NodeMotion<Scalar, width>> motion[3];
     std::vector<Block> blocks;
     int depth = 0;
 };
