@@ -103,16 +103,20 @@ class TreeBounds {
                 motion_[axis] = tree.motion[axis].empty() ? nullptr : tree.motion[axis].data();
         }
     }
-    /// Of all children of a node.
+    /// Of all children of a node, along an axis on which the ray's direction has this sign.
     template <class Boxes>
-    RAYPOOL_INLINE Boxes children(std::size_t node, int axis, int side, const Boxes& time) const {
+    RAYPOOL_INLINE void children(std::size_t node, int axis, int sign, const Boxes& time, Boxes& near,
+                                 Boxes& far) const {
         if constexpr (kCanMove) {
             if (motion_[axis] != nullptr) {
                 const auto& motion = motion_[axis][node];
-                return mad<Boxes>(time, load<Boxes>(motion.change[side]), load<Boxes>(motion.start[side]));
+                near = mad<Boxes>(time, load<Boxes>(motion.change[sign]), load<Boxes>(motion.start[sign]));
+                far = mad<Boxes>(time, load<Boxes>(motion.change[1 - sign]), load<Boxes>(motion.start[1 - sign]));
+                return;
             }
         }
-        return load<Boxes>(nodes_[node].bounds[axis][side]);
+        near = load<Boxes>(nodes_[node].bounds[axis][sign]);
+        far = load<Boxes>(nodes_[node].bounds[axis][1 - sign]);
     }
     /// Of one, for a register of rays.
     template <class Real>
@@ -213,10 +217,8 @@ RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tr
             work.count(node);
             Vec3<Real> near;
             Vec3<Real> far;
-            for (int i = 0; i < 3; ++i) {
-                near[i] = bounds.template children<Real>(index, i, ray.sign[i], ray.time);
-                far[i] = bounds.template children<Real>(index, i, 1 - ray.sign[i], ray.time);
-            }
+            for (int i = 0; i < 3; ++i)
+                bounds.template children<Real>(index, i, ray.sign[i], ray.time, near[i], far[i]);
             const Interval<Real> inside = box_interval<Real>(near, far, ray.origin, ray.inverse, Real(hit.t));
             alignas(64) S enter[kLanes<Real>];
             inside.enter.copy_to(enter, stdx::vector_aligned);

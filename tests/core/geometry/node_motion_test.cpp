@@ -39,8 +39,9 @@ template <class Scalar>
 Side<Scalar> child_bounds(const auto& tree, std::size_t node, int lane, int axis, Scalar time) {
     using Boxes = Wide<Scalar, kTreeWidth<Scalar>>;
     const raypool::detail::TreeBounds<kMoving, std::remove_cvref_t<decltype(tree)>> bounds(tree);
-    const Boxes low = bounds.template children<Boxes>(node, axis, 0, Boxes(time));
-    const Boxes high = bounds.template children<Boxes>(node, axis, 1, Boxes(time));
+    Boxes low;
+    Boxes high;
+    bounds.template children<Boxes>(node, axis, 0, Boxes(time), low, high);
     return {raypool::lane(low, lane), raypool::lane(high, lane)};
 }
 
