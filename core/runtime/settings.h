@@ -19,7 +19,7 @@ struct ImageSettings {
     std::uint64_t seed = 0;
     Sampler sampler = Sampler::Independent;
     int split_depth = 0;    ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits
-    bool roulette = false;  ///< end paths that carry little by chance, without bias (core/shading/shade.h)
+    bool roulette = false;  ///< end paths that carry little by chance, without bias (core/shading/roulette.h)
 };
 
 /// How a render is handed out to threads: OpenMP's schedule clause; its taskloop, whose grainsize is the chunk; or

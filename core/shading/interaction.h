@@ -1,0 +1,187 @@
+/// What is where a ray meets a surface: the point with its normal, the material, the colour, and how a ray starts
+/// there.
+#pragma once
+
+#include "core/geometry/shapes.h"
+#include "core/shading/checker_method.h"
+#include "core/shading/compiled_scene.h"
+#include "core/shading/textures.h"
+
+namespace raypool {
+
+/// A point on a surface, seen along a ray.
+template <class Real>
+struct SurfacePoint {
+    Vec3<Real> position;
+    Vec3<Real> normal;    ///< unit, on the side that the ray arrives from
+    Vec3<Real> outward;   ///< unit, geometric: away from a sphere's centre
+    Mask<Real> is_front;  ///< the ray arrives from the outward side
+};
+
+/// `row` is the primitive's SurfaceRow, transposed. A hit on a sphere is put back onto the sphere where the distance
+/// travelled, and with it the rounding error, is larger than the radius; on a large sphere that would do harm. A hit on
+/// a quad or plane is put back always: its error is then a few ulps of its own coordinates, whatever the ray's length,
+/// and none across a plane that lies across an axis.
+template <Features features, class Real>
+RAYPOOL_INLINE SurfacePoint<Real> surface_point(const Ray<Real>& ray, const Real& t, const Real* row) {
+    using Row = SurfaceRow<ScalarOf<Real>>;
+    const Vec3<Real> p = along<Real>(ray.origin, t, ray.direction);
+    const Real radius = row[Row::kRadius];
+    Vec3<Real> center = vec3<Real>(row[Row::kCenter], row[Row::kCenter + 1], row[Row::kCenter + 2]);
+    const Vec3<Real> stored = center;  // of a quad or plane this is the normal, and the motion is a point of it
+    const Vec3<Real> motion = vec3<Real>(row[Row::kMotion], row[Row::kMotion + 1], row[Row::kMotion + 2]);
+    if constexpr (features.motion) center = center_at<Real>(center, motion, ray.time);
+
+    SurfacePoint<Real> point;
+    const Mask<Real> is_planar = features.planar ? radius < Real(0) : Mask<Real>(false);
+    if (!all(is_planar)) {
+        point.outward = unit<Real>(vec3<Real>(p[0] - center[0], p[1] - center[1], p[2] - center[2]));
+        point.position = select<Real>(radius < t, along<Real>(center, radius, point.outward), p);
+    }
+    if (features.planar && any(is_planar)) {
+        // Not the height above the plane, negated: gcc 12 makes one instruction of that, with another sign of zero.
+        const Real depth = dot<Real>(vec3<Real>(motion[0] - p[0], motion[1] - p[1], motion[2] - p[2]), stored);
+        const Vec3<Real> in_plane = along<Real>(p, depth, stored);
+        const bool is_alone = all(is_planar);
+        point.outward = is_alone ? stored : select<Real>(is_planar, stored, point.outward);
+        point.position = is_alone ? in_plane : select<Real>(is_planar, in_plane, point.position);
+    }
+    point.is_front = dot<Real>(ray.direction, point.outward) < Real(0);
+    point.normal = select<Real>(point.is_front, point.outward, -point.outward);
+    return point;
+}
+
+/// The row's colour, or what its texture makes of it, where `is_wanted`.
+template <Features features, class Real>
+RAYPOOL_INLINE Vec3<Real> surface_colour(const SceneView<ScalarOf<Real>>& scene, const SurfacePoint<Real>& point,
+                                         const Int<Real>& primitive_id, const Real* row,
+                                         const SurfaceCode<Int<Real>>& code, const Mask<Real>& is_wanted) {
+    using S = ScalarOf<Real>;
+    using Row = SurfaceRow<S>;
+    Vec3<Real> colour = vec3<Real>(row[Row::kColour], row[Row::kColour + 1], row[Row::kColour + 2]);
+    if constexpr (!features.checker && !features.uv) return colour;
+
+    const Int<Real> texture_kind = code.texture();
+    const auto is_kind = [&](Texture::Kind kind) {
+        return is_wanted && as_mask<Real>(texture_kind == Int<Real>(static_cast<int>(kind)));
+    };
+    const Mask<Real> is_checker_3d = features.checker ? is_kind(Texture::Kind::Checker3d) : Mask<Real>(false);
+    const Mask<Real> is_checker_uv = features.uv ? is_kind(Texture::Kind::CheckerUv) : Mask<Real>(false);
+    const Mask<Real> is_image =
+        features.uv ? is_wanted && as_mask<Real>(texture_kind >= Int<Real>(static_cast<int>(Texture::Kind::Image)))
+                    : Mask<Real>(false);
+
+    std::array<Real, 2> uv{Real(0), Real(0)};
+    if constexpr (features.uv) {
+        if (any(is_checker_uv || is_image)) {
+            uv = sphere_coordinates<Real>(point.outward);
+            if constexpr (features.planar) {
+                const Mask<Real> is_planar = row[Row::kRadius] < Real(0);
+                if (any(is_planar)) {
+                    Real planar[PlanarRow<S>::kColumns];
+                    const Int<Real> planar_row = primitive_id - Int<Real>(static_cast<int>(scene.first_planar()));
+                    load_rows<PlanarRow<S>::kColumns, Real>(scene.planars.data()->value, PlanarRow<S>::kColumns,
+                                                            select(is_planar, planar_row, Int<Real>(0)), planar);
+                    const auto part = [&](int first) {
+                        return vec3<Real>(planar[first], planar[first + 1], planar[first + 2]);
+                    };
+                    const std::array<Real, 2> in_plane =
+                        plane_coordinates<Real>(point.position, part(PlanarRow<S>::kCorner), part(PlanarRow<S>::kDualU),
+                                                part(PlanarRow<S>::kDualV));
+                    uv = {select(is_planar, in_plane[0], uv[0]), select(is_planar, in_plane[1], uv[1])};
+                }
+            }
+        }
+    }
+    if (any(is_checker_3d || is_checker_uv)) {
+        using Tex = TextureRow<S>;
+        Real texture[Tex::kColumns];
+        const Int<Real> texture_row = code.texture_row();
+        const Mask<Real> is_checker = is_checker_3d || is_checker_uv;
+        const auto first = lane(texture_row, std::countr_zero(mask_bits(is_checker)));
+        if (none(is_checker && as_mask<Real>(texture_row != Int<Real>(first)))) {  // mostly all want the same
+            const S* one = scene.textures[static_cast<std::size_t>(first)].value;
+            for (int k = 0; k < Tex::kColumns; ++k) texture[k] = Real(one[k]);
+        } else {
+            load_rows<Tex::kColumns, Real>(scene.textures.data()->value, Tex::kColumns, texture_row, texture);
+        }
+        const TwoParts<Real> scale{texture[Tex::kScaleHigh], texture[Tex::kScaleLow]};
+        const Vec3<Real> odd = vec3<Real>(texture[Tex::kOdd], texture[Tex::kOdd + 1], texture[Tex::kOdd + 2]);
+        Vec3<Real> at;
+        Vec3<Real> outward;
+        for (int i = 0; i < 3; ++i) {
+            const Real offset = texture[Tex::kOffset + i];
+            at[i] = point.position[i] + offset;
+            outward[i] = outward_part<Real>(point.position[i], offset, scale, point.outward[i]);
+        }
+        if constexpr (features.uv) {
+            const Vec3<Real> zero = vec3<Real>(Real(0), Real(0), Real(0));
+            at = select<Real>(is_checker_uv, vec3<Real>(uv[0], uv[1], Real(0)), at);
+            outward = select<Real>(is_checker_uv, zero, outward);
+        }
+        const Mask<Real> is_odd = (is_checker_3d || is_checker_uv) &&
+                                  CheckerMethod<features.variant>::template is_odd<Real>(at, outward, scale);
+        colour = select<Real>(is_odd, odd, colour);
+    }
+    if constexpr (features.uv) {
+        for (unsigned bits = mask_bits(is_image); bits != 0; bits &= bits - 1) {
+            const int i = std::countr_zero(bits);
+            const auto& image = scene.images[static_cast<std::size_t>(lane(code.texture_row(), i))];
+            const auto repeat = static_cast<int>(lane(texture_kind, i)) - static_cast<int>(Texture::Kind::Image);
+            const Vec3<S> texel =
+                image_colour<S>(image, lane(uv[0], i), lane(uv[1], i), ImageRepeat::of_number(repeat));
+            for (int k = 0; k < 3; ++k) {
+                if constexpr (Simd<Real>) {
+                    colour[k][i] = texel[k];
+                } else {
+                    colour[k] = texel[k];
+                }
+            }
+        }
+    }
+    return colour;
+}
+
+/// What the surface is made of, where it was hit.
+template <Features features, class Real>
+struct SurfaceMaterial {
+    Int<Real> kind;  ///< a Material::Kind
+    Real parameter;  ///< fuzz of metal, index of refraction of glass
+
+    [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_emitter() const {
+        return features.emissive ? is(Material::Kind::Emissive) : Mask<Real>(false);
+    }
+    [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_glass() const {
+        return features.dielectric ? is(Material::Kind::Dielectric) : Mask<Real>(false);
+    }
+    [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_metal() const {
+        return features.metal ? is(Material::Kind::Metal) : Mask<Real>(false);
+    }
+    [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_diffuse() const { return !(is_glass() || is_metal() || is_emitter()); }
+
+  private:
+    [[nodiscard]] RAYPOOL_INLINE Mask<Real> is(Material::Kind which) const {
+        return as_mask<Real>(kind == Int<Real>(static_cast<int>(which)));
+    }
+};
+
+/// How a ray starts on a surface: where, and what it cannot hit.
+template <class Real>
+struct RayStart {
+    Vec3<Real> origin;
+    Int<Real> leaving_id;  ///< a sphere's id; of a quad or plane the id of the shapes in its plane
+};
+
+/// Of a ray that leaves `point` of primitive `primitive_id`, whose SurfaceRow is `row`. No other place decides where a
+/// ray starts. (Set in place: of a returned one gcc 12 makes a copy, which single rays feel.)
+template <Features features, class Real>
+RAYPOOL_INLINE void set_ray_start(RayStart<Real>& start, const SurfacePoint<Real>& point, const Int<Real>& primitive_id,
+                                  const Real* row) {
+    start.origin = point.position;
+    start.leaving_id = primitive_id;
+    if constexpr (features.planar) {
+        start.leaving_id = PlanarMark<Real>::group(row[SurfaceRow<ScalarOf<Real>>::kRadius], primitive_id);
+    }
+}
+
+}  // namespace raypool
