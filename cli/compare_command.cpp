@@ -223,7 +223,7 @@ int compare(const CompareOptions& options) {
 
 void add_compare_command(CLI::App& app, int& status) {
     auto options = std::make_shared<CompareOptions>();
-    CLI::App* command = app.add_subcommand("compare", "Run every engine in turn: same hash? how fast? who waited?");
+    CLI::App* command = app.add_subcommand("compare", "Run every engine in turn: same hash? how fast? which threads waited?");
     command->add_option("scene", options->scene, "Scene file, or the name of a built-in scene (default: paper)");
     command->add_option("--spp", options->spp, "Samples per pixel (default: 32)")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}));

@@ -1,5 +1,5 @@
-/// What ranks tell each other before work begins: what each is about to do, or what keeps it from doing so. Nobody
-/// renders, writes or waits for the others before all have said the same.
+/// What ranks tell each other before work begins: what each is about to do, or what keeps it from doing so. No
+/// rank renders, writes or waits for the others before all have said the same.
 #pragma once
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 ///
 /// The render command calls it in place of its engine where there are several ranks, at the same time and with the same
 /// settings on each of them. Reports are of what this rank did, but `seconds` is what rank 0 waited, on all ranks: so
-/// whoever decides by it decides the same everywhere.
+/// a decision by it is the same everywhere.
 ///
 /// Sums stay where they were made until gather(), so a render costs one reduction, however many pieces it has: before,
 /// only the sum over ranks of their framebuffers means anything. An adaptive render must know all sums to decide what

@@ -59,7 +59,7 @@ bool FileLock::try_to_lock(const fs::path& path, const fs::path& file) {
         return true;
     }
     if (companion_.empty()) return true;
-    // Who had it before may have removed the companion between open() and flock().
+    // The process that had it before may have removed the companion between open() and flock().
     struct stat open_file {};
     struct stat named {};
     if (::fstat(descriptor_, &open_file) == 0 && ::stat(companion_.c_str(), &named) == 0 &&

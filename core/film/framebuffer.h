@@ -1,7 +1,7 @@
 /// The framebuffer: three int64 fixed-point sums a pixel, interleaved (r, g, b, r, g, b, ...), row 0 at the top.
 ///
 /// Integer addition is exact and has no order, so any engine, schedule or thread count that adds the same samples makes
-/// the same bits. Whoever adds must own the pixel meanwhile, or add atomically.
+/// the same bits. A thread that adds must own the pixel meanwhile, or add atomically.
 /// The step is 2^-k with k chosen so that no render can overflow: spp samples of the scene's greatest radiance fit. It
 /// is the same for all renders of up to 16,384 samples a pixel.
 /// On request it also keeps the sum of squares of the samples of each pixel, exact and free of order too: the second

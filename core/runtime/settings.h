@@ -12,7 +12,7 @@ namespace raypool {
 struct CostImage;
 class Trace;
 
-/// What the image depends on, beside the scene, the samples and the precision. Whoever says which image it is lists all
+/// What the image depends on, beside the scene, the samples and the precision. The key of an image lists all
 /// of them by a structured binding, so that none can be forgotten.
 struct ImageSettings {
     std::int32_t depth = 50;  ///< most segments of a path, up to path_step::kMostBounces; 0 makes a black image

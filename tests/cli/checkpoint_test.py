@@ -43,7 +43,7 @@ STOPS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGXCPU")
 
 
 def mounted(what, where, *options):
-    """Whether it could be; who is not root may not."""
+    """Whether it could be; only root may."""
     return subprocess.run(["mount", *options, what, where], stderr=subprocess.DEVNULL, check=False).returncode == 0
 
 

@@ -1,4 +1,4 @@
-/// What ranks say to each other before work begins, and who of them ends it.
+/// What ranks say to each other before work begins, and which of them ends it.
 #include "cluster/agreement.h"
 
 #include <gtest/gtest.h>

@@ -34,7 +34,7 @@ template <class Scalar>
 struct Side {
     Scalar low, high;
 };
-/// As single rays see it, who read the bounds of all children at once.
+/// As single rays see it, which read the bounds of all children at once.
 template <class Scalar>
 Side<Scalar> child_bounds(const auto& tree, std::size_t node, int lane, int axis, Scalar time) {
     using Boxes = Wide<Scalar, kTreeWidth<Scalar>>;

@@ -1,4 +1,4 @@
-/// Adaptive sampling on framebuffers whose statistics are known: the estimate, and who gets more.
+/// Adaptive sampling on framebuffers whose statistics are known: the estimate, and which pixels get more.
 #include "core/runtime/adaptive.h"
 
 #include <cmath>
