@@ -108,7 +108,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
 
     /// A counting sort by material kind (misses last) of records and hits. The settings must ask for it.
     void sort_by_material(Records& records, std::size_t first, std::size_t count) {
-        constexpr std::size_t kKinds = 5;
+        constexpr std::size_t kKinds = Material::kKindCount + 1;
         const auto kind = [&](std::size_t i) -> std::size_t {
             const std::int32_t id = stream().primitive_id()[i];
             if (id < 0) return kKinds - 1;

@@ -55,6 +55,7 @@ struct Texture {
 
 struct Material {
     enum class Kind : std::uint8_t { Diffuse, Metal, Dielectric, Emissive };
+    static constexpr int kKindCount = static_cast<int>(Kind::Emissive) + 1;
     Kind kind = Kind::Diffuse;
     std::int32_t texture_id =
         0;            ///< albedo in [0, 1] (Diffuse, Metal), radiance in [0, 1e6] (Emissive); unused by Dielectric

@@ -63,6 +63,7 @@ struct PlanarMark {
 template <class Integer>
 struct SurfaceCode {
     static constexpr int kMaterialBits = 3;
+    static_assert(Material::kKindCount <= 1 << kMaterialBits);
     static constexpr int kTextureBits = 3;
     static constexpr std::size_t kMostTextures = std::size_t{1} << (31 - kMaterialBits - kTextureBits);
 
