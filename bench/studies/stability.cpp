@@ -50,7 +50,7 @@ std::vector<Row> curve_rows(const stability::Case& one, std::int64_t samples) {
         for (std::size_t i = 0; i < one.values.size(); ++i) {
             Row row = start_of_row(kCurve, one.id, one.row, method);
             extend(row, {one.parameter, one.values[i], one.measure, method.error(one.values[i], samples), one.tolerance,
-                         i < one.held_values() ? 1 : 0, nullptr});
+                         i < one.held ? 1 : 0, nullptr});
             rows.push_back(std::move(row));
         }
     }
