@@ -30,6 +30,11 @@ double mean(std::span<const double> values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
 double mean_squared_difference(const Values& a, const Values& b) {
     RAYPOOL_CHECK(a.size() == b.size() && !a.empty(), "images of one size");
     double sum = 0;

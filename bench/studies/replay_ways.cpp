@@ -4,7 +4,6 @@
 #include <memory>
 #include <numeric>
 
-#include "core/base/error.h"
 #include "core/runtime/balanced_items.h"
 #include "wavefront/settings.h"
 
@@ -105,19 +104,6 @@ PreparedWay prepare(const ReplayWay& way, const PathCosts& costs, const CostMode
         }
     }
     return {};
-}
-
-Row sparse_row(const std::vector<Column>& columns, const std::vector<std::pair<std::string_view, Value>>& values) {
-    Row row;
-    std::size_t found = 0;
-    for (const Column& column : columns) {
-        const auto value =
-            std::find_if(values.begin(), values.end(), [&](const auto& v) { return v.first == column.name; });
-        row.push_back(value == values.end() ? Value() : value->second);
-        if (value != values.end()) ++found;
-    }
-    RAYPOOL_CHECK(found == values.size(), "a study knows its columns");
-    return row;
 }
 
 }  // namespace raypool::studies
