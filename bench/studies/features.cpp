@@ -43,8 +43,9 @@ class FeatureEngine : public Engine {
 }  // namespace
 
 BeginFunction pool_begin(std::size_t set) {
-    if (set < kFileSets) return pool_begin_front(set);
-    return set < 2 * kFileSets ? pool_begin_middle(set) : pool_begin_back(set);
+    constexpr BeginFunction (*kParts[])(std::size_t) = {pool_begin_of_part<0>, pool_begin_of_part<1>,
+                                                        pool_begin_of_part<2>};
+    return kParts[set / kPartSets](set);
 }
 
 namespace {

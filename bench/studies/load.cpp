@@ -67,7 +67,7 @@ std::vector<Cells> replay_load(const StudyScene& scene, const RenderSettings& se
     };
     for (const LoopWay& way : loops) {
         const ReplayWay loop = loop_way(way);
-        const Replayed result = prepare(loop, costs, kTests).replay(threads, {});
+        const Replayed result = prepare(loop, costs, kTests).replay(threads, {}, {});
         std::vector<Tally> work(static_cast<std::size_t>(threads));
         const std::vector<Tally> items = costs.items(loop.grain);
         for (std::size_t i = 0; i < items.size(); ++i) work[static_cast<std::size_t>(result.owner[i])].add(items[i]);
@@ -76,8 +76,8 @@ std::vector<Cells> replay_load(const StudyScene& scene, const RenderSettings& se
                            Cells{{"box_tests", work[i].box_tests}, {"primitive_tests", work[i].primitive_tests}});
     }
     const ReplayWay shares{kShares, ReplayWay::Kind::Drained, {}, {}, 0, 1};
-    const std::vector<double> segments = prepare(shares, costs, {1, 0}).replay(threads, {}).work;
-    const std::vector<double> tests = prepare(shares, costs, kTests).replay(threads, {}).work;
+    const std::vector<double> segments = prepare(shares, costs, {1, 0}).replay(threads, {}, {}).work;
+    const std::vector<double> tests = prepare(shares, costs, kTests).replay(threads, {}, {}).work;
     for (std::size_t i = 0; i < segments.size(); ++i)
         rows.push_back(
             row("pool", kShares, i, {static_cast<std::int64_t>(segments[i]), static_cast<std::int64_t>(tests[i]), 0}));

@@ -150,15 +150,15 @@ std::vector<Cells> replay_all(Work& work, const StudyScene& scene, const RenderS
         for (std::size_t i = 0; i < replayed.size(); ++i) {
             failure.run([&] {
                 const int threads = replayed[i];
-                const Replayed counted = tests.replay(threads, {});
-                const Replayed timed = time.replay(threads, {});
+                const Replayed counted = tests.replay(threads, {}, {});
+                const Replayed timed = time.replay(threads, {}, {});
                 filled[i] = Cells{{"kind", "replayed"},
                                   {"group", grouped.group},
                                   {"way", way.name},
                                   {"threads", threads},
                                   {"efficiency_tests", counted.efficiency()},
                                   {"efficiency_time", timed.efficiency()},
-                                  {"efficiency_costs", time.replay(threads, openmp.at(threads)).efficiency()},
+                                  {"efficiency_costs", time.replay(threads, openmp.at(threads), {}).efficiency()},
                                   {"efficiency_bound", timed.total() / (threads * time.bound(threads))},
                                   {"max_over_mean", max_over_mean(counted.work)}};
             });
@@ -176,7 +176,7 @@ std::vector<Cells> run_real(Work& work, const StudyScene& scene, RenderSettings 
     const bool is_pool = way.kind == ReplayWay::Kind::ThreadPools;
     const PreparedWay prepared = prepare(way, work.costs(), is_pool ? work.pool_model() : work.fit().model);
     const double alone = equal_work_seconds(scene, settings, 1)[0];
-    const double one = prepared.replay(1, work.openmp().at(1)).makespan;
+    const double one = prepared.replay(1, work.openmp().at(1), {}).makespan;
 
     std::vector<Cells> rows;
     for (const int n : {1, threads}) {

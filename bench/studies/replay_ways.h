@@ -49,14 +49,9 @@ inline ReplayWay thread_pool_way(const LoopWay& way) {
 
 /// A way with everything about the work prepared, so that thread counts are cheap.
 struct PreparedWay {
-    using Speeds = std::span<const double>;
-    std::function<Replayed(int threads, const ReplayCosts& costs, Speeds speeds)> run;
-    std::function<double(int threads)> bound;  ///< the shortest makespan
-
     /// The speeds as in raypool::studies::replay(); rounds know none.
-    [[nodiscard]] Replayed replay(int threads, const ReplayCosts& costs, Speeds speeds = {}) const {
-        return run(threads, costs, speeds);
-    }
+    std::function<Replayed(int threads, const ReplayCosts& costs, std::span<const double> speeds)> replay;
+    std::function<double(int threads)> bound;  ///< the shortest makespan
 };
 /// The costs outlive it.
 PreparedWay prepare(const ReplayWay& way, const PathCosts& costs, const CostModel& model);

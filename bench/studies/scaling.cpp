@@ -66,13 +66,14 @@ std::vector<Cells> replayed_scaling(const StudyScene& scene, const RenderSetting
         const PreparedWay prepared =
             prepare(replay_of(way), costs,
                     is_pool ? scaled_to(*engine_of(way).engine, scene, settings, costs, model, 2) : model);
-        const double one = prepared.replay(1, openmp.at(1)).makespan;
+        const double one = prepared.replay(1, openmp.at(1), {}).makespan;
         for (const int threads : thread_counts(most))
-            rows.push_back({{"source", "replayed"},
-                            {"way", way.loop.name},
-                            {"width", scene.compiled.width},
-                            {"threads", threads},
-                            {"efficiency", one / (threads * prepared.replay(threads, openmp.at(threads)).makespan)}});
+            rows.push_back(
+                {{"source", "replayed"},
+                 {"way", way.loop.name},
+                 {"width", scene.compiled.width},
+                 {"threads", threads},
+                 {"efficiency", one / (threads * prepared.replay(threads, openmp.at(threads), {}).makespan)}});
     }
     return rows;
 }
