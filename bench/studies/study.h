@@ -2,8 +2,8 @@
 ///
 /// A study owns the question and nothing else: runner.h interleaves the repeats, checks the images, keeps the data and
 /// resumes an interrupted run. To add a study, define a function that returns it in a file of its own, and list that in
-/// registry.h and registry.cpp. What
-/// the table says is Python's: a module of the same name in scripts/analysis/ reads the rows, judges and draws them.
+/// registry.h and registry.cpp. What the table says is Python's: a module of the same name in scripts/analysis/ reads
+/// the rows, judges and draws them.
 #pragma once
 
 #include <cstdint>
