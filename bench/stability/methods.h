@@ -43,7 +43,7 @@ class Methods {
     Methods& ours_in_both(Way way, Work work = {}) {
         return ours<float>("ours, float", way, std::move(work)).template ours<double>("ours, double", way);
     }
-    operator std::vector<Method>() const { return methods_; }  // NOLINT(google-explicit-constructor)
+    operator std::vector<Method>() const { return methods_; }
 
   private:
     template <class Scalar, class Way>
