@@ -54,12 +54,8 @@ class Packets {
     std::vector<std::int32_t> primitive_id_;
 };
 
-/// What holds a ray: its record and its hit; in a stream also the row that the traversal reads.
-constexpr std::size_t kBytes = record_bytes<kPaper, float>() + sizeof(float) + sizeof(std::int32_t);
-constexpr std::size_t kStreamBytes = kBytes + sizeof(RayRow<float>);
-
-/// The contestant is one of the classes above.
-template <class Contestant, std::size_t bytes_per_ray>
+/// The contestant is one of the classes above. A ray is held by its record and its hit, and by `row_bytes` more.
+template <class Contestant, std::size_t row_bytes>
 void intersect(benchmark::State& state, const RayKind& kind, std::size_t count) {
     const Records& records = frozen_rays(kind, count);
     Staged<Intersection::Single> single(count);
@@ -77,7 +73,8 @@ void intersect(benchmark::State& state, const RayKind& kind, std::size_t count) 
         contestant.intersect(records, count);
         benchmark::ClobberMemory();
     }
-    count_rays(state, static_cast<std::int64_t>(count), bytes_per_ray);
+    const std::size_t bytes = record_bytes<kPaper, float>() + sizeof(float) + sizeof(std::int32_t) + row_bytes;
+    count_rays(state, static_cast<std::int64_t>(count), static_cast<double>(bytes));
 }
 
 }  // namespace
@@ -86,13 +83,14 @@ void intersect(benchmark::State& state, const RayKind& kind, std::size_t count) 
 int main(int argc, char** argv) {
     using namespace raypool;
     if (!begin_benchmarks(argc, argv)) return 2;
+    constexpr std::size_t kRow = sizeof(RayRow<float>);  // that the traversal of a stream reads
     const struct {
         const char* name;
         void (*run)(benchmark::State& state, const RayKind& kind, std::size_t count);
-    } contestants[] = {{"single", intersect<Staged<Intersection::Single>, kBytes>},
-                       {"packet", intersect<Packets, kBytes>},
-                       {"stream", intersect<Staged<Intersection::Stream>, kStreamBytes>},
-                       {"pairs", intersect<Staged<Intersection::Pairs>, kStreamBytes>}};
+    } contestants[] = {{"single", intersect<Staged<Intersection::Single>, 0>},
+                       {"packet", intersect<Packets, 0>},
+                       {"stream", intersect<Staged<Intersection::Stream>, kRow>},
+                       {"pairs", intersect<Staged<Intersection::Pairs>, kRow>}};
     for (const auto& contestant : contestants) {
         for_each_frozen_batch([&](const RayKind& kind, std::size_t count, const std::string& batch) {
             add_row(std::string("intersect/") + contestant.name + "/" + batch,
