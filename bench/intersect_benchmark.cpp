@@ -1,7 +1,6 @@
 // The closest hits of frozen rays: each ray by itself, registers of rays as packets, and the whole batch as a stream.
 // All three read the same columns and must find the same hits, bit by bit.
 
-#include <memory>
 #include <vector>
 
 #include "bench/bench_support.h"
@@ -18,35 +17,25 @@ struct Hits {
     const std::int32_t* primitive_id;
 };
 
-/// A way to intersect a batch.
-class Contestant {
-  public:
-    Contestant() = default;
-    Contestant(const Contestant&) = delete;
-    Contestant& operator=(const Contestant&) = delete;
-    virtual ~Contestant() = default;
-    virtual void intersect(const Records& records, std::size_t count) = 0;
-    virtual Hits hits() = 0;
-};
-
 /// Ray by ray, or as a stream: the intersection stage of the pool.
-class Staged : public Contestant {
+template <Intersection intersection>
+class Staged {
   public:
-    Staged(Intersection intersection, std::size_t count) : rig_({.intersection = intersection}, count) {}
-    void intersect(const Records& records, std::size_t count) override { rig_.stages().intersect(records, 0, count); }
-    Hits hits() override { return {rig_.stages().stream().distance(), rig_.stages().stream().primitive_id()}; }
+    explicit Staged(std::size_t count) : rig_({.intersection = intersection}, count) {}
+    void intersect(const Records& records, std::size_t count) { rig_.stages().intersect(records, 0, count); }
+    Hits hits() { return {rig_.stages().stream().distance(), rig_.stages().stream().primitive_id()}; }
 
   private:
     StageRig<Lanes> rig_;
 };
 
 /// Packets, as the fused camera stage makes them, of whatever rays are neighbours in the batch.
-class Packets : public Contestant {
+class Packets {
   public:
     explicit Packets(std::size_t count) : distance_(count), primitive_id_(count) {
         RAYPOOL_CHECK(count % kLanes<Lanes> == 0, "a batch is made of whole registers");
     }
-    void intersect(const Records& records, std::size_t count) override {
+    void intersect(const Records& records, std::size_t count) {
         using Ids = stdx::rebind_simd_t<std::int32_t, Uint32<Lanes>>;
         NoTestCount work;
         for (std::size_t i = 0; i < count; i += kLanes<Lanes>) {
@@ -57,7 +46,7 @@ class Packets : public Contestant {
             stdx::static_simd_cast<Ids>(hit.primitive_id).copy_to(&primitive_id_[i], stdx::element_aligned);
         }
     }
-    Hits hits() override { return {distance_.data(), primitive_id_.data()}; }
+    [[nodiscard]] Hits hits() const { return {distance_.data(), primitive_id_.data()}; }
 
   private:
     FlushDenormals flush_;
@@ -65,43 +54,27 @@ class Packets : public Contestant {
     std::vector<std::int32_t> primitive_id_;
 };
 
-enum class Method { Single, Packet, Stream, Pairs };
-constexpr Method kMethods[] = {Method::Single, Method::Packet, Method::Stream, Method::Pairs};
-constexpr const char* kMethodNames[] = {"single", "packet", "stream", "pairs"};
-
-std::unique_ptr<Contestant> make(Method method, std::size_t count) {
-    if (method == Method::Packet) return std::make_unique<Packets>(count);
-    return std::make_unique<Staged>(method == Method::Single   ? Intersection::Single
-                                    : method == Method::Stream ? Intersection::Stream
-                                                               : Intersection::Pairs,
-                                    count);
-}
-
-/// What holds a ray: its record and its hit; in a stream also the row that the traversal reads.
-double bytes_per_ray(Method method) {
-    const std::size_t hit = sizeof(float) + sizeof(std::int32_t);
-    const std::size_t row = method == Method::Stream || method == Method::Pairs ? sizeof(RayRow<float>) : 0;
-    return static_cast<double>(record_bytes<kPaper, float>() + hit + row);
-}
-
-void intersect(benchmark::State& state, Method method, const RayKind& kind, std::size_t count) {
+/// The contestant is one of the classes above. A ray is held by its record and its hit, and by `row_bytes` more.
+template <class Contestant, std::size_t row_bytes>
+void intersect(benchmark::State& state, const RayKind& kind, std::size_t count) {
     const Records& records = frozen_rays(kind, count);
-    const auto single = make(Method::Single, count);
-    const auto contestant = make(method, count);
-    single->intersect(records, count);
-    contestant->intersect(records, count);
-    const Hits expected = single->hits();
-    const Hits found = contestant->hits();
+    Staged<Intersection::Single> single(count);
+    Contestant contestant(count);
+    single.intersect(records, count);
+    contestant.intersect(records, count);
+    const Hits expected = single.hits();
+    const Hits found = contestant.hits();
     if (!agree(state,
                same_bits(expected.distance, found.distance, count) &&
                    same_bits(expected.primitive_id, found.primitive_id, count),
                "the hits differ from those of single rays"))
         return;
     for (auto _ : state) {
-        contestant->intersect(records, count);
+        contestant.intersect(records, count);
         benchmark::ClobberMemory();
     }
-    count_rays(state, static_cast<std::int64_t>(count), bytes_per_ray(method));
+    const std::size_t bytes = record_bytes<kPaper, float>() + sizeof(float) + sizeof(std::int32_t) + row_bytes;
+    count_rays(state, static_cast<std::int64_t>(count), static_cast<double>(bytes));
 }
 
 }  // namespace
@@ -110,10 +83,18 @@ void intersect(benchmark::State& state, Method method, const RayKind& kind, std:
 int main(int argc, char** argv) {
     using namespace raypool;
     if (!begin_benchmarks(argc, argv)) return 2;
-    for (const Method method : kMethods) {
+    constexpr std::size_t kRow = sizeof(RayRow<float>);  // that the traversal of a stream reads
+    const struct {
+        const char* name;
+        void (*run)(benchmark::State& state, const RayKind& kind, std::size_t count);
+    } contestants[] = {{"single", intersect<Staged<Intersection::Single>, 0>},
+                       {"packet", intersect<Packets, 0>},
+                       {"stream", intersect<Staged<Intersection::Stream>, kRow>},
+                       {"pairs", intersect<Staged<Intersection::Pairs>, kRow>}};
+    for (const auto& contestant : contestants) {
         for_each_frozen_batch([&](const RayKind& kind, std::size_t count, const std::string& batch) {
-            add_row(std::string("intersect/") + kMethodNames[static_cast<int>(method)] + "/" + batch,
-                    [=](benchmark::State& state) { intersect(state, method, kind, count); });
+            add_row(std::string("intersect/") + contestant.name + "/" + batch,
+                    [=, run = contestant.run](benchmark::State& state) { run(state, kind, count); });
         });
     }
     benchmark::RunSpecifiedBenchmarks();

@@ -36,7 +36,7 @@ struct StudyCommand {
 };
 
 void list_studies() {
-    for (const auto& study : studies::all_studies()) print("{:<14} {}\n", study->name(), study->question());
+    for (const studies::Study& study : studies::all_studies()) print("{:<14} {}\n", study.name, study.question);
     print("{:<14} All of the paper's experiments, and a page that holds its figures against ours.\n", kReproduce);
 }
 
@@ -74,9 +74,9 @@ int study(StudyCommand& command) {
     const StopSignals signals;  // end a study after the case under way; a second one at once
     if (command.options.threads > 0) thread_count(command.options.threads);
     const fs::path folder = command.output.empty() ? fs::path("out") / command.name : fs::path(command.output);
-    if (command.name != kReproduce) return run(*studies::make_study(command.name), folder, command);
+    if (command.name != kReproduce) return run(studies::make_study(command.name), folder, command);
     for (const std::string& name : kPaperStudies) {
-        const int status = run(*studies::make_study(name), folder / name, command);
+        const int status = run(studies::make_study(name), folder / name, command);
         if (status != 0) return status;
     }
     studies::write_reproduction(folder, kPaperStudies);

@@ -11,14 +11,9 @@ namespace raypool::accuracy {
 
 namespace {
 
-RenderReport render_with(const Engine& engine, const Configuration& configuration, const SceneInBoth& scene,
-                         const RenderSettings& settings, Framebuffer& framebuffer) {
-    return configuration.precision == Precision::Float ? engine.render(scene.in_float, settings, framebuffer)
-                                                       : engine.render(scene.in_double, settings, framebuffer);
-}
-
-double max_radiance(const Configuration& configuration, const SceneInBoth& scene) {
-    return configuration.precision == Precision::Float ? scene.in_float.max_radiance : scene.in_double.max_radiance;
+/// What `visit` makes of the scene in the configuration's precision.
+auto in_precision(const Configuration& configuration, const SceneInBoth& scene, const auto& visit) {
+    return configuration.precision == Precision::Float ? visit(scene.in_float) : visit(scene.in_double);
 }
 
 }  // namespace
@@ -52,15 +47,18 @@ RenderReport render_into(Framebuffer& framebuffer, const Configuration& configur
     settings.split_depth = configuration.split_depth;
     settings.sampler = configuration.sampler;
     settings.roulette = configuration.roulette;
-    if (configuration.engine == EngineKind::Pool)
-        return render_with(wavefront::WavefrontEngine(wavefront::PoolSettings{}), configuration, scene, settings,
-                           framebuffer);
-    return render_with(recursive::RecursiveEngine(), configuration, scene, settings, framebuffer);
+    return in_precision(configuration, scene, [&](const auto& compiled) {
+        return configuration.engine == EngineKind::Pool
+                   ? wavefront::WavefrontEngine({}).render(compiled, settings, framebuffer)
+                   : recursive::RecursiveEngine().render(compiled, settings, framebuffer);
+    });
 }
 
 TimedImage render_image(const Configuration& configuration, const SceneInBoth& scene, const Taken& taken) {
+    const double max_radiance =
+        in_precision(configuration, scene, [](const auto& compiled) -> double { return compiled.max_radiance; });
     Framebuffer framebuffer(scene.in_float.width, scene.in_float.height,
-                            FixedPoint::make(taken.end_sample, max_radiance(configuration, scene)));
+                            FixedPoint::make(taken.end_sample, max_radiance));
     RenderReport report = render_into(framebuffer, configuration, scene, taken);
     return {channel_means(framebuffer, taken.end_sample - taken.first_sample), std::move(report), framebuffer.hash()};
 }

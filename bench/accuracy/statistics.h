@@ -17,6 +17,9 @@ using Values = std::vector<double>;
 /// Of at least one value.
 double mean(std::span<const double> values);
 
+/// Of at least one value.
+double median(std::vector<double> values);
+
 /// Mean of (a - b)^2. The images have the same size and at least one pixel.
 double mean_squared_difference(const Values& a, const Values& b);
 

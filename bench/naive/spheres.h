@@ -29,7 +29,7 @@ RAYPOOL_INLINE Real plain_dot(const Vec3<Real>& a, const Vec3<Real>& b) {
 /// The quadratic of "Ray Tracing in One Weekend", chapter 6: h^2 - a c cancels where the sphere is far or huge.
 template <class Real>
 RAYPOOL_INLINE Real half_b_distance(const Vec3<Real>& origin, const Vec3<Real>& direction, const Vec3<Real>& center,
-                                    const Real& radius, const Real& least) {
+                                    const Real& radius, const Real& least = Real(0)) {
     const Vec3<Real> oc = vec3<Real>(center[0] - origin[0], center[1] - origin[1], center[2] - origin[2]);
     const Real a = plain_dot<Real>(direction, direction);
     const Real h = plain_dot<Real>(direction, oc);
@@ -43,7 +43,7 @@ RAYPOOL_INLINE Real half_b_distance(const Vec3<Real>& origin, const Vec3<Real>& 
 /// surface as it is there, f.f - r^2, which cancels above a huge sphere.
 template <class Real>
 RAYPOOL_INLINE Real haines_distance(const Vec3<Real>& origin, const Vec3<Real>& direction, const Vec3<Real>& center,
-                                    const Real& radius, const Real& least) {
+                                    const Real& radius, const Real& least = Real(0)) {
     const Vec3<Real> f = vec3<Real>(origin[0] - center[0], origin[1] - center[1], origin[2] - center[2]);
     const Real b = -dot<Real>(f, direction);
     const Vec3<Real> closest = along<Real>(f, b, direction);
@@ -74,7 +74,7 @@ struct Bounded {
 /// The same quadratic in interval arithmetic, a hit refused where the discriminant might be negative.
 template <class Scalar>
 Scalar interval_distance(const Vec3<Scalar>& origin, const Vec3<Scalar>& direction, const Vec3<Scalar>& center,
-                         Scalar radius, Scalar least) {
+                         Scalar radius, Scalar least = 0) {
     using B = Bounded<Scalar>;
     const auto exact = [](Scalar a) { return B{a, a}; };
     B h = exact(0), a = exact(0), c = exact(0) - exact(radius) * exact(radius);

@@ -1,6 +1,8 @@
 /// What a case of numerical stability is: one parameter made harder step by step, and what several methods then get
 /// wrong.
 ///
+/// What a case is in words and numbers stands in cases.json; its methods are C++, in the file of its family.
+///
 /// The study `stability` draws the curves and times the methods; tests/stability/ asserts the sharp points. Everything
 /// here is deterministic: inputs come from fixed seeds, and errors are judged by a wider oracle (128-bit numbers, long
 /// double) or a closed form. Ours are the kernels of core/, instantiated; what else there is lies in bench/naive/.
@@ -9,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace raypool::stability {
@@ -28,43 +31,46 @@ struct Method {
     std::function<double(std::int64_t calls)> work = {};
 };
 
+/// One entry of cases.json, with its methods.
 struct Case {
     std::string id;
-    std::string row;  ///< of the catalogue in docs/stability.md; "+" for what was added to it
-    std::string parameter;
+    std::string row;             ///< of the catalogue in docs/stability.md; "+" for what was added to it
+    std::string parameter;       ///< what is made harder
     std::vector<double> values;  ///< from easy to hard
     std::string measure;         ///< what the error is, with its unit
     double tolerance = 0;        ///< a method whose error is greater has broken
+    std::int64_t samples = 0;    ///< inputs for a smooth curve; a tenth is enough to tell. 0: the values say all
     std::string symptom;         ///< what an image shows where a method breaks
-    std::int64_t samples = 0;    ///< inputs for a smooth curve; a tenth is enough to tell
+    std::size_t held = 0;        ///< how many of the values ours must hold: all, unless the entry says "held"
+    std::string limit;           ///< why ours does not hold the rest
     std::vector<Method> methods;
-    std::size_t held = 0;    ///< how many of the values ours must hold; 0: all
-    std::string limit = {};  ///< why ours does not hold the rest
 
-    [[nodiscard]] std::size_t held_values() const { return held == 0 ? values.size() : held; }
     /// A method that does not exist is a bug.
     [[nodiscard]] const Method& method(const std::string& name) const;
 };
 
-/// All cases, by the rows of the catalogue.
+/// All cases, in the order of cases.json.
 const std::vector<Case>& all_cases();
 /// An id that does not exist is a bug.
 const Case& find_case(const std::string& id);
 
+/// The methods of cases, by the ids of the cases.
+using CaseMethods = std::vector<std::pair<std::string, std::vector<Method>>>;
+
 // The families, each in the file of its name.
-std::vector<Case> sphere_cases();
-std::vector<Case> leaving_cases();
-std::vector<Case> coincidence_cases();
-std::vector<Case> box_cases();
-std::vector<Case> motion_cases();
-std::vector<Case> scattering_cases();
-std::vector<Case> glass_cases();
-std::vector<Case> path_cases();
-std::vector<Case> sum_cases();
-std::vector<Case> random_cases();
-std::vector<Case> texture_cases();
-std::vector<Case> size_cases();
-std::vector<Case> flat_cases();
-std::vector<Case> image_cases();
+CaseMethods sphere_cases();
+CaseMethods leaving_cases();
+CaseMethods coincidence_cases();
+CaseMethods box_cases();
+CaseMethods motion_cases();
+CaseMethods scattering_cases();
+CaseMethods glass_cases();
+CaseMethods path_cases();
+CaseMethods sum_cases();
+CaseMethods random_cases();
+CaseMethods texture_cases();
+CaseMethods size_cases();
+CaseMethods flat_cases();
+CaseMethods image_cases();
 
 }  // namespace raypool::stability

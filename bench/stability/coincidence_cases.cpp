@@ -23,9 +23,7 @@ Place random_place(RandomInputs& random, double distance) {
     return {distance * random.direction<double>(), u, n.cross(u), n};
 }
 
-/// Lists the surface in one shape, or in two.
-using Listing = void (*)(Scene& scene, const Place& place, bool is_twice);
-
+// Each lists the surface at the place in one shape, or in two.
 void add_plane_and_quad(Scene& scene, const Place& p, bool is_twice) {
     scene.quads.push_back({p.at - 10 * p.u - 10 * p.v, 20 * p.u, 20 * p.v, 0});
     if (is_twice) scene.planes.push_back({p.at + 3 * p.u - 7 * p.v, p.n, 0});
@@ -52,8 +50,8 @@ template <class Scalar>
 int hit_count(const CompiledScene<Scalar>& scene, Ray<Scalar> ray, std::uint32_t path) {
     constexpr int kMost = 12;
     auto leaving = std::int32_t{kNoPrimitive};
+    NoTestCount work;
     for (int hits = 0; hits < kMost; ++hits) {
-        NoTestCount work;
         const Hit<Scalar> hit = closest_hit<kEverything>(scene, ray, leaving, work);
         if (hit.primitive_id == kNoPrimitive) return hits;
         const Scattered<Scalar> out =
@@ -66,65 +64,58 @@ int hit_count(const CompiledScene<Scalar>& scene, Ray<Scalar> ray, std::uint32_t
     return kMost;
 }
 
-/// Paths that meet a surface listed twice more or less often than the surface listed once.
-template <class Scalar, bool is_ours, Listing list>
-double changed_paths(double distance, std::int64_t paths) {
-    RandomInputs random(25);
-    constexpr int kPathsOfPlace = 20;
-    std::int64_t changed = 0;
-    std::int64_t traced = 0;
-    while (traced < paths) {
-        const Place place = random_place(random, distance);
-        Scene scene;
-        scene.camera.look_from = place.at + 10 * place.n;
-        scene.camera.shutter_close = 1;
-        scene.textures.emplace_back().even = Vector3d::Constant(0.8);
-        scene.materials.emplace_back();
-        Scene twice = scene;
-        list(scene, place, false);
-        list(twice, place, true);
-        const CompiledScene<Scalar> first = compile<Scalar>(scene);
-        const CompiledScene<Scalar> both =
-            is_ours ? compile<Scalar>(twice) : compile<Scalar>(twice, no_coincidence(twice));
-        for (int i = 0; i < kPathsOfPlace; ++i, ++traced) {
-            const Vector3d target =
-                place.at + random.uniform(-0.5, 0.5) * place.u + random.uniform(-0.5, 0.5) * place.v;
-            Vector3d away = random.direction<double>();
-            if (away.dot(place.n) < 0) away = -away;
-            const Ray<Scalar> ray{narrow<Scalar>(target + 10 * (away + 0.2 * place.n).normalized()),
-                                  narrow<Scalar>(-(away + 0.2 * place.n).normalized()), random.unit_interval<Scalar>()};
-            const auto path = static_cast<std::uint32_t>(traced);
-            changed += hit_count<Scalar>(first, ray, path) != hit_count<Scalar>(both, ray, path) ? 1 : 0;
-        }
-    }
-    return share(changed, traced);
-}
+constexpr auto kOurs = []<class Scalar>(const Scene& scene) { return compile<Scalar>(scene); };
+constexpr auto kIdAlone = []<class Scalar>(const Scene& scene) {
+    return compile<Scalar>(scene, no_coincidence(scene));
+};
 
-template <Listing list>
-Case coincidence(const char* id, const char* symptom) {
-    return {.id = id,
-            .row = "2f",
-            .parameter = "distance of the scene from the origin",
-            .values = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5},
-            .measure = "paths with another number of hits than on the first shape alone, share",
-            .tolerance = 0,
-            .symptom = symptom,
-            .samples = 20'000,
-            .methods = {{"excluding the id alone, float", Kind::Naive, changed_paths<float, false, list>},
-                        {"excluding the id alone, double", Kind::Naive, changed_paths<double, false, list>},
-                        {"ours, float", Kind::Ours, changed_paths<float, true, list>},
-                        {"ours, double", Kind::Ours, changed_paths<double, true, list>}}};
+/// Paths that meet a surface listed twice more or less often than the surface listed once.
+std::vector<Method> methods(void (*list)(Scene& scene, const Place& place, bool is_twice)) {
+    const auto changed_paths = [list]<class Scalar>(const auto& compile_twice, double distance, std::int64_t paths) {
+        constexpr int kPathsOfPlace = 20;
+        RandomInputs random(25);
+        std::int64_t changed = 0;
+        std::int64_t traced = 0;
+        while (traced < paths) {
+            const Place place = random_place(random, distance);
+            Scene once;
+            once.camera.look_from = place.at + 10 * place.n;
+            once.camera.shutter_close = 1;
+            once.textures.emplace_back().even = Vector3d::Constant(0.8);
+            once.materials.emplace_back();
+            Scene twice = once;
+            list(once, place, false);
+            list(twice, place, true);
+            const CompiledScene<Scalar> first = compile<Scalar>(once);
+            const CompiledScene<Scalar> both = compile_twice.template operator()<Scalar>(twice);
+            for (int i = 0; i < kPathsOfPlace; ++i, ++traced) {
+                const Vector3d target =
+                    place.at + random.uniform(-0.5, 0.5) * place.u + random.uniform(-0.5, 0.5) * place.v;
+                Vector3d away = random.direction<double>();
+                if (away.dot(place.n) < 0) away = -away;
+                away = (away + 0.2 * place.n).normalized();
+                const Ray<Scalar> ray{narrow<Scalar>(target + 10 * away), narrow<Scalar>(-away),
+                                      random.unit_interval<Scalar>()};
+                const auto path = static_cast<std::uint32_t>(traced);
+                changed += hit_count<Scalar>(first, ray, path) != hit_count<Scalar>(both, ray, path) ? 1 : 0;
+            }
+        }
+        return share(changed, traced);
+    };
+    return Methods(changed_paths)
+        .naive("excluding the id alone, float", kIdAlone)
+        .naive<double>("excluding the id alone, double", kIdAlone)
+        .ours_in_both(kOurs);
 }
 
 }  // namespace
 
-std::vector<Case> coincidence_cases() {
-    return {
-        coincidence<add_plane_and_quad>("coincident-plane-quad", "a dark patch of dots; light through doubled walls"),
-        coincidence<add_quads>("coincident-quads", "a dark patch of dots; light through doubled walls"),
-        coincidence<add_spheres>("coincident-spheres", "a sphere listed twice is too dark"),
-        coincidence<add_glass>("coincident-glass", "glass listed twice bends light like no glass"),
-        coincidence<add_moving>("coincident-moving", "a sphere listed twice is too dark")};
+CaseMethods coincidence_cases() {
+    return {{"coincident-plane-quad", methods(add_plane_and_quad)},
+            {"coincident-quads", methods(add_quads)},
+            {"coincident-spheres", methods(add_spheres)},
+            {"coincident-glass", methods(add_glass)},
+            {"coincident-moving", methods(add_moving)}};
 }
 
 }  // namespace raypool::stability

@@ -29,6 +29,7 @@ struct Failure {
     NaiveVariant variant;
     Scene scene;
 };
+/// The entries of failures.json, whose scenes are written as docs/scene-format.md says.
 const std::vector<Failure>& all_failures();
 
 /// One scene three times: by the naive variant, by the engine in float, and by the engine in double.

@@ -5,6 +5,7 @@
 
 #include "bench/stability/case.h"
 #include "bench/stability/failures.h"
+#include "bench/stability/methods.h"
 #include "recursive/engine.h"
 
 namespace raypool::stability {
@@ -34,47 +35,30 @@ double mean(const Image& image) {
     return std::accumulate(image.rgb.begin(), image.rgb.end(), 0.0) / static_cast<double>(image.rgb.size());
 }
 
-template <bool is_ours>
-double bias(const Scene& scene, std::int64_t spp) {
+constexpr auto kNaive = [](const FailureImages& images) { return images.naive; };
+constexpr auto kOurs = [](const FailureImages& images) { return images.ours; };
+
+template <class Image>
+double bias(const Image& image_of, const Scene& scene, std::int64_t spp) {
     RenderSettings settings;
     settings.end_sample = spp;
     const FailureImages images = render_failure(NaiveVariant::LeastDistance, scene, settings);
-    return std::abs(mean(is_ours ? images.ours : images.naive) / mean(images.reference) - 1);
+    return std::abs(mean(image_of(images)) / mean(images.reference) - 1);
 }
-template <bool is_ours>
-double bias_by_radius(double radius, std::int64_t spp) {
-    return bias<is_ours>(ball_on_ground(radius, 0), spp);
-}
-template <bool is_ours>
-double bias_by_translation(double translation, std::int64_t spp) {
-    return bias<is_ours>(ball_on_ground(1000, translation), spp);
-}
+constexpr auto kBiasByRadius = []<class>(const auto& image_of, double radius, std::int64_t spp) {
+    return bias(image_of, ball_on_ground(radius, 0), spp);
+};
+constexpr auto kBiasByTranslation = []<class>(const auto& image_of, double translation, std::int64_t spp) {
+    return bias(image_of, ball_on_ground(1000, translation), spp);
+};
 
 }  // namespace
 
-std::vector<Case> image_cases() {
-    std::vector<Case> cases;
-    cases.push_back({.id = "ground-bias",
-                     .row = "2e",
-                     .parameter = "radius of the ground",
-                     .values = {1e1, 1e2, 1e3, 1e4},
-                     .measure = "mean of the image against double, relative",
-                     .tolerance = 2e-5,
-                     .symptom = "everything is a little too dark",
-                     .samples = 160,
-                     .methods = {{"least distance 1e-3, float", Kind::Naive, bias_by_radius<false>},
-                                 {"ours, float", Kind::Ours, bias_by_radius<true>}}});
-    cases.push_back({.id = "far-scene-bias",
-                     .row = "+",
-                     .parameter = "distance of the scene from the origin",
-                     .values = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5},
-                     .measure = "mean of the image against double, relative",
-                     .tolerance = 1e-3,
-                     .symptom = "the image darkens, then falls apart, with the distance",
-                     .samples = 160,
-                     .methods = {{"least distance 1e-3, float", Kind::Naive, bias_by_translation<false>},
-                                 {"ours, float", Kind::Ours, bias_by_translation<true>}}});
-    return cases;
+CaseMethods image_cases() {
+    return {
+        {"ground-bias", Methods(kBiasByRadius).naive("least distance 1e-3, float", kNaive).ours("ours, float", kOurs)},
+        {"far-scene-bias",
+         Methods(kBiasByTranslation).naive("least distance 1e-3, float", kNaive).ours("ours, float", kOurs)}};
 }
 
 }  // namespace raypool::stability

@@ -11,36 +11,23 @@ namespace raypool::stability {
 
 namespace {
 
-/// The same roots as ours, and hits closer than `least` do not count. `at` is a point of the surface.
-struct NoEpsilon {
-    template <class Scalar>
-    static Scalar distance(const SurfacePoint<Scalar>& at, const Vec3<Scalar>& d, const Vec3<Scalar>& center, Scalar r,
-                           bool) {
-        return naive::haines_distance<Scalar>(at.position, d, center, r, Scalar(0));
-    }
+// Ways to find the distance from a surface point to a sphere, which the point may be on. The naive ones have the same
+// roots as ours, and do not count hits closer than a least distance.
+constexpr auto kNoEpsilon = [](const auto& at, const auto& direction, const auto& center, auto radius, bool) {
+    return naive::haines_distance(at.position, direction, center, radius);
 };
-struct BookEpsilon {
-    template <class Scalar>
-    static Scalar distance(const SurfacePoint<Scalar>& at, const Vec3<Scalar>& d, const Vec3<Scalar>& center, Scalar r,
-                           bool) {
-        return naive::haines_distance<Scalar>(at.position, d, center, r, Scalar(naive::kBookEpsilon));
-    }
+constexpr auto kBookEpsilon = []<class Scalar>(const SurfacePoint<Scalar>& at, const Vec3<Scalar>& direction,
+                                               const Vec3<Scalar>& center, Scalar radius, bool) {
+    return naive::haines_distance<Scalar>(at.position, direction, center, radius, Scalar(naive::kBookEpsilon));
 };
-/// The origin moved off the surface, to the side that the ray goes to.
-struct Offset {
-    template <class Scalar>
-    static Scalar distance(const SurfacePoint<Scalar>& at, const Vec3<Scalar>& d, const Vec3<Scalar>& center, Scalar r,
-                           bool) {
-        const Vec3<Scalar> side = dot<Scalar>(d, at.outward) > 0 ? at.outward : Vec3<Scalar>(-at.outward);
-        return naive::haines_distance<Scalar>(naive::offset_origin(at.position, side), d, center, r, Scalar(0));
-    }
+/// The origin is moved off the surface, to the side that the ray goes to.
+constexpr auto kOffset = [](const SurfacePoint<float>& at, const Vec3<float>& direction, const Vec3<float>& center,
+                            float radius, bool) {
+    const Vec3<float> side = dot<float>(direction, at.outward) > 0 ? at.outward : Vec3<float>(-at.outward);
+    return naive::haines_distance(naive::offset_origin(at.position, side), direction, center, radius);
 };
-struct Ours {
-    template <class Scalar>
-    static Scalar distance(const SurfacePoint<Scalar>& at, const Vec3<Scalar>& d, const Vec3<Scalar>& center, Scalar r,
-                           bool is_on) {
-        return sphere_distance<Scalar>(at.position, d, center, r, is_on);
-    }
+constexpr auto kOurs = [](const auto& at, const auto& direction, const auto& center, auto radius, bool is_on) {
+    return sphere_distance(at.position, direction, center, radius, is_on);
 };
 
 template <class Scalar>
@@ -50,71 +37,54 @@ Vec3<Scalar> diffuse(RandomInputs& random, const Vec3<Scalar>& normal) {
 }
 
 /// Diffuse rays that leave a sphere and meet it again, which none can.
-template <class Scalar, class Test>
-double acne(double radius, double translation, std::int64_t rays) {
-    RandomInputs random(21);
+template <class Scalar>
+double acne(const auto& distance, double radius, double translation, std::int64_t rays) {
     const auto r = static_cast<Scalar>(radius);
-    std::int64_t met = 0;
-    for (std::int64_t i = 0; i < rays; ++i) {
+    return share_of(rays, RandomInputs(21), [&](RandomInputs& random) {
         const Vec3<Scalar> center = narrow<Scalar>(translation * random.direction<double>());
         const SurfacePoint<Scalar> point = seen_point<Scalar>(random, center, r);
-        const Vec3<Scalar> direction = diffuse<Scalar>(random, point.normal);
-        met += Test::template distance<Scalar>(point, direction, center, r, true) < kInfinity<Scalar> ? 1 : 0;
-    }
-    return share(met, rays);
+        return distance(point, diffuse<Scalar>(random, point.normal), center, r, true) < kInfinity<Scalar>;
+    });
 }
-template <class Scalar, class Test>
-double acne_by_translation(double translation, std::int64_t rays) {
-    return acne<Scalar, Test>(1, translation, rays);
-}
-template <class Scalar, class Test>
-double acne_by_radius(double radius, std::int64_t rays) {
-    return acne<Scalar, Test>(radius, 0, rays);
-}
+constexpr auto kAcneByTranslation = []<class Scalar>(const auto& distance, double translation, std::int64_t rays) {
+    return acne<Scalar>(distance, 1, translation, rays);
+};
+constexpr auto kAcneByRadius = []<class Scalar>(const auto& distance, double radius, std::int64_t rays) {
+    return acne<Scalar>(distance, radius, 0, rays);
+};
 
 /// Rays refracted into a sphere of glass that do not meet its far side, which all do.
-template <class Scalar, class Test>
-double lost_far_side(double radius, std::int64_t rays) {
-    RandomInputs random(22);
+constexpr auto kLostFarSide = []<class Scalar>(const auto& distance, double radius, std::int64_t rays) {
     const auto r = static_cast<Scalar>(radius);
-    std::int64_t lost = 0;
-    for (std::int64_t i = 0; i < rays; ++i) {
+    return share_of(rays, RandomInputs(22), [&](RandomInputs& random) {
         const Vec3<Scalar> center = random.point<Scalar>(2);
         const SurfacePoint<Scalar> point = seen_point<Scalar>(random, center, r);
         Vec3<Scalar> arriving = random.direction<Scalar>();
         if (dot<Scalar>(arriving, point.normal) > 0) arriving = -arriving;
         const Vec3<Scalar> inward = fresnel_split<Scalar>(arriving, point.normal, 1 / Scalar(1.5)).refracted;
-        lost += Test::template distance<Scalar>(point, inward, center, r, true) < kInfinity<Scalar> ? 0 : 1;
-    }
-    return share(lost, rays);
-}
+        return !(distance(point, inward, center, r, true) < kInfinity<Scalar>);
+    });
+};
 
 /// Light that comes through a sphere resting on the ground to the ground beneath it.
-template <class Scalar, class Test>
-double leak(double radius, std::int64_t rays) {
-    RandomInputs random(23);
+constexpr auto kLeak = []<class Scalar>(const auto& distance, double radius, std::int64_t rays) {
     const auto r = static_cast<Scalar>(radius);
     const Vec3<Scalar> center = vec3<Scalar>(0, r, 0);
-    std::int64_t shadowed = 0;
-    std::int64_t leaked = 0;
-    for (std::int64_t i = 0; i < rays; ++i) {
+    return share_of(rays, RandomInputs(23), [&](RandomInputs& random) -> std::optional<bool> {
         SurfacePoint<Scalar> ground{};
         ground.position = random.point<Scalar>(radius);
         ground.position[1] = 0;
         ground.normal = ground.outward = vec3<Scalar>(0, 1, 0);
         const Vec3<Scalar> up = diffuse<Scalar>(random, ground.normal);
-        if (!ExactSphere(ground.position, up, center, r).is_met()) continue;
-        ++shadowed;
-        leaked += Test::template distance<Scalar>(ground, up, center, r, false) < kInfinity<Scalar> ? 0 : 1;
-    }
-    return share(leaked, shadowed);
-}
+        if (!ExactSphere(ground.position, up, center, r).is_met()) return {};
+        return !(distance(ground, up, center, r, false) < kInfinity<Scalar>);
+    });
+};
 
 /// A closed sphere whose wall shines with 1 and reflects 99 %: every path brings home 100. What is missing, as a part.
-/// A path that leaves through the wall is lost; one that meets the wall where it stands is not seen, so this is a test
+/// A path that leaves through the wall is lost. One that meets the wall where it stands is not seen, so this is a test
 /// beside those for hits and never in their place.
-template <class Scalar, class Test>
-double furnace(double translation, std::int64_t paths) {
+constexpr auto kFurnace = []<class Scalar>(const auto& distance, double translation, std::int64_t paths) {
     constexpr double kAlbedo = 0.99;
     RandomInputs random(24);
     double sum = 0;
@@ -125,7 +95,7 @@ double furnace(double translation, std::int64_t paths) {
         Vec3<Scalar> direction = random.direction<Scalar>();
         double throughput = 1;
         for (bool is_on = false; throughput > 1e-9; is_on = true) {
-            const Scalar t = Test::template distance<Scalar>(point, direction, center, Scalar(1), is_on);
+            const Scalar t = distance(point, direction, center, Scalar(1), is_on);
             if (!(t < kInfinity<Scalar>)) break;
             sum += throughput;
             throughput *= kAlbedo;
@@ -135,75 +105,24 @@ double furnace(double translation, std::int64_t paths) {
         if (throughput <= 1e-9) sum += throughput / (1 - kAlbedo);
     }
     return std::abs(sum * (1 - kAlbedo) / static_cast<double>(paths) - 1);
-}
+};
 
 }  // namespace
 
-std::vector<Case> leaving_cases() {
-    std::vector<Case> cases;
-    cases.push_back(
-        {.id = "acne-far",
-         .row = "2a",
-         .parameter = "distance of the scene from the origin, radius 1",
-         .values = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6},
-         .measure = "diffuse rays that meet the sphere they leave, share",
-         .tolerance = 0,
-         .symptom = "acne: dark specks all over the surface",
-         .samples = 200'000,
-         .methods = {{"least distance 0, float", Kind::Naive, acne_by_translation<float, NoEpsilon>},
-                     {"least distance 1e-3, float", Kind::Naive, acne_by_translation<float, BookEpsilon>},
-                     {"offset origin, float", Kind::Alternative, acne_by_translation<float, Offset>},
-                     {"ours, float", Kind::Ours, acne_by_translation<float, Ours>},
-                     {"ours, double", Kind::Ours, acne_by_translation<double, Ours>}},
-         .held = 6,
-         .limit = "across the diameter float has 32 positions there, and the normal is not that of the rounded point"});
-    cases.push_back({.id = "acne-large",
-                     .row = "2a",
-                     .parameter = "radius, at the origin",
-                     .values = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5},
-                     .measure = "diffuse rays that meet the sphere they leave, share",
-                     .tolerance = 0,
-                     .symptom = "acne on the ground",
-                     .samples = 200'000,
-                     .methods = {{"least distance 0, float", Kind::Naive, acne_by_radius<float, NoEpsilon>},
-                                 {"least distance 1e-3, float", Kind::Naive, acne_by_radius<float, BookEpsilon>},
-                                 {"offset origin, float", Kind::Alternative, acne_by_radius<float, Offset>},
-                                 {"ours, float", Kind::Ours, acne_by_radius<float, Ours>},
-                                 {"ours, double", Kind::Ours, acne_by_radius<double, Ours>}}});
-    cases.push_back({.id = "far-side",
-                     .row = "2b",
-                     .parameter = "radius of a sphere of glass",
-                     .values = {1e0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5},
-                     .measure = "refracted rays that lose the far side, share",
-                     .tolerance = 0,
-                     .symptom = "small glass turns into a lens without a back",
-                     .samples = 100'000,
-                     .methods = {{"least distance 1e-3, float", Kind::Naive, lost_far_side<float, BookEpsilon>},
-                                 {"ours, float", Kind::Ours, lost_far_side<float, Ours>},
-                                 {"ours, double", Kind::Ours, lost_far_side<double, Ours>}}});
-    cases.push_back({.id = "leak",
-                     .row = "2c",
-                     .parameter = "radius of a sphere on the ground",
-                     .values = {1e0, 1e-1, 1e-2, 1e-3, 1e-4},
-                     .measure = "rays from beneath that pass through it, share",
-                     .tolerance = 0,
-                     .symptom = "small things cast no shadow where they stand",
-                     .samples = 20'000,
-                     .methods = {{"least distance 1e-3, float", Kind::Naive, leak<float, BookEpsilon>},
-                                 {"ours, float", Kind::Ours, leak<float, Ours>},
-                                 {"ours, double", Kind::Ours, leak<double, Ours>}}});
-    cases.push_back({.id = "furnace-far",
-                     .row = "2d",
-                     .parameter = "distance of the furnace from the origin, radius 1",
-                     .values = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5},
-                     .measure = "light of a closed furnace that is missing, part",
-                     .tolerance = 2e-6,
-                     .symptom = "closed rooms darken: light escapes through walls",
-                     .samples = 300,
-                     .methods = {{"least distance 1e-3, float", Kind::Naive, furnace<float, BookEpsilon>},
-                                 {"ours, float", Kind::Ours, furnace<float, Ours>},
-                                 {"ours, double", Kind::Ours, furnace<double, Ours>}}});
-    return cases;
+CaseMethods leaving_cases() {
+    return {{"acne-far", Methods(kAcneByTranslation)
+                             .naive("least distance 0, float", kNoEpsilon)
+                             .naive("least distance 1e-3, float", kBookEpsilon)
+                             .other("offset origin, float", kOffset)
+                             .ours_in_both(kOurs)},
+            {"acne-large", Methods(kAcneByRadius)
+                               .naive("least distance 0, float", kNoEpsilon)
+                               .naive("least distance 1e-3, float", kBookEpsilon)
+                               .other("offset origin, float", kOffset)
+                               .ours_in_both(kOurs)},
+            {"far-side", Methods(kLostFarSide).naive("least distance 1e-3, float", kBookEpsilon).ours_in_both(kOurs)},
+            {"leak", Methods(kLeak).naive("least distance 1e-3, float", kBookEpsilon).ours_in_both(kOurs)},
+            {"furnace-far", Methods(kFurnace).naive("least distance 1e-3, float", kBookEpsilon).ours_in_both(kOurs)}};
 }
 
 }  // namespace raypool::stability

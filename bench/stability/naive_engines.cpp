@@ -1,3 +1,5 @@
+#include <array>
+
 #include "bench/naive/checkers.h"
 #include "bench/naive/spheres.h"
 #include "bench/stability/failures.h"
@@ -63,17 +65,9 @@ RenderReport render(const CompiledScene<float>& scene, const RenderSettings& set
 
 RenderReport render_naively(NaiveVariant variant, const CompiledScene<float>& scene, const RenderSettings& settings,
                             Framebuffer& framebuffer) {
-    switch (variant) {
-        case NaiveVariant::LeastDistance:
-            return render<NaiveVariant::LeastDistance>(scene, settings, framebuffer);
-        case NaiveVariant::HalfB:
-            return render<NaiveVariant::HalfB>(scene, settings, framebuffer);
-        case NaiveVariant::IdAlone:
-            return render<NaiveVariant::IdAlone>(scene, settings, framebuffer);
-        case NaiveVariant::Truncation:
-            break;
-    }
-    return render<NaiveVariant::Truncation>(scene, settings, framebuffer);
+    using enum NaiveVariant;
+    constexpr auto kRenders = std::array{render<LeastDistance>, render<HalfB>, render<Truncation>, render<IdAlone>};
+    return kRenders[static_cast<std::size_t>(variant) - 1](scene, settings, framebuffer);
 }
 
 }  // namespace raypool::stability

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/shading/compiled_scene.h"
+#include "tests/random_inputs.h"
 
 namespace raypool::stability {
 
@@ -72,6 +73,11 @@ std::vector<PaddedSphere<Scalar>> padded_spheres(const std::vector<Sphere>& sphe
             take(tree.blocks[static_cast<std::size_t>(~child)], leaf);
         }
     return padded;
+}
+
+template <class Scalar>
+const PaddedSphere<Scalar>& any_of(const std::vector<PaddedSphere<Scalar>>& spheres, test::RandomInputs& random) {
+    return spheres[static_cast<std::size_t>(random.below(static_cast<int>(spheres.size())))];
 }
 
 }  // namespace raypool::stability

@@ -34,53 +34,57 @@ struct PlaneRay {
     }
 };
 
-struct OffsetPlane {
-    template <class Scalar>
-    static Scalar distance(const PlaneRay<Scalar>& ray) {
-        return naive::offset_plane_distance<Scalar>(ray.origin, ray.direction, ray.normal,
-                                                    dot<Scalar>(ray.normal, ray.point));
-    }
+// Ways to find the distance to the plane.
+constexpr auto kOffsetPlane = []<class Scalar>(const PlaneRay<Scalar>& ray) {
+    const Scalar offset = dot<Scalar>(ray.normal, ray.point);
+    return naive::offset_plane_distance<Scalar>(ray.origin, ray.direction, ray.normal, offset);
 };
-struct OurPlane {
-    template <class Scalar>
-    static Scalar distance(const PlaneRay<Scalar>& ray) {
-        return plane_distance<Scalar>(ray.origin, ray.direction, ray.point, ray.normal, false);
-    }
+constexpr auto kOurPlane = [](const auto& ray) {
+    return plane_distance(ray.origin, ray.direction, ray.point, ray.normal, false);
 };
-struct OurPlaneInDouble {
-    template <class Scalar>
-    static double distance(const PlaneRay<Scalar>& ray) {
-        return plane_distance<double>(wide(ray.origin), wide(ray.direction), wide(ray.point), wide(ray.normal), false);
-    }
+constexpr auto kOurPlaneInDouble = [](const auto& ray) {
+    return plane_distance(wide(ray.origin), wide(ray.direction), wide(ray.point), wide(ray.normal), false);
 };
 
-template <class Scalar, class Plane>
-double plane_error(double translation, double sine, std::int64_t rays) {
-    RandomInputs random(91);
-    Errors errors;
-    for (std::int64_t i = 0; i < rays; ++i) {
+template <class Scalar>
+double plane_error(const auto& distance, double translation, double sine, std::int64_t rays) {
+    const Errors errors = errors_of(rays, RandomInputs(91), [&](RandomInputs& random, Errors& all) {
         const PlaneRay<Scalar> ray(random, translation, sine);
         const Float128 exact = ray.exact();
         // The stored numbers need not be those that were aimed at: keep the rays that still meet the plane in front.
         if (exact > Float128{0.2} / Float128{sine} && exact < Float128{5} / Float128{sine})
-            errors.add((Plane::template distance<Scalar>(ray) - exact) / exact);
-    }
-    return std::min(errors.quantile(0.99), 1.0);
+            all.add((distance(ray) - exact) / exact);
+    });
+    return quantile_up_to_one(errors, 0.99);
 }
-template <class Scalar, class Plane>
-double far_plane(double translation, std::int64_t rays) {
-    return plane_error<Scalar, Plane>(translation, 0.5, rays);
-}
-template <class Scalar, class Plane>
-double grazing_plane(double sine, std::int64_t rays) {
-    return plane_error<Scalar, Plane>(0, sine, rays);
-}
+constexpr auto kFarPlane = []<class Scalar>(const auto& distance, double translation, std::int64_t rays) {
+    return plane_error<Scalar>(distance, translation, 0.5, rays);
+};
+constexpr auto kGrazingPlane = []<class Scalar>(const auto& distance, double sine, std::int64_t rays) {
+    return plane_error<Scalar>(distance, 0, sine, rays);
+};
 
 constexpr Features kPlanar{false, false, true, false, false, false, false, false, false};
 
+// Ways to tell whether a ray meets one of the two quads of a scene.
+constexpr auto kOurQuads = []<class Scalar>(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray) {
+    NoTestCount work;
+    return closest_hit<kPlanar>(scene, ray, kNoPrimitive, work).primitive_id != kNoPrimitive;
+};
+constexpr auto kStrictQuads = []<class Scalar>(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray) {
+    using Planar = PlanarRow<Scalar>;
+    const auto part = [](const Scalar* from) { return vec3<Scalar>(from[0], from[1], from[2]); };
+    const auto is_met = [&](std::size_t id) {
+        const Scalar* planar = scene.planars[id].value;
+        return naive::strict_quad_distance<Scalar>(ray.origin, ray.direction, part(planar + Planar::kCorner),
+                                                   part(scene.surfaces[id].value + SurfaceRow<Scalar>::kCenter),
+                                                   part(planar + Planar::kDualU),
+                                                   part(planar + Planar::kDualV)) < kInfinity<Scalar>;
+    };
+    return is_met(0) || is_met(1);
+};
 /// Rays from a distance at the seam of two quads that share an edge, in any position: those that pass between the two.
-template <class Scalar, bool is_ours>
-double seam(double distance, std::int64_t rays) {
+constexpr auto kSeam = []<class Scalar>(const auto& is_met, double distance, std::int64_t rays) {
     RandomInputs random(92);
     constexpr std::int64_t kRaysOfPair = 100;
     std::int64_t passed = 0;
@@ -100,69 +104,21 @@ double seam(double distance, std::int64_t rays) {
             Vec3<double> away = random.direction<double>();
             if (std::abs(away.dot(normal)) < 0.2) away = normal;
             const Ray<Scalar> ray{narrow<Scalar>(target + distance * away), narrow<Scalar>(-away), 0};
-            bool is_met = false;
-            if constexpr (is_ours) {
-                NoTestCount work;
-                is_met = closest_hit<kPlanar>(compiled, ray, kNoPrimitive, work).primitive_id != kNoPrimitive;
-            } else {
-                using Planar = PlanarRow<Scalar>;
-                for (std::size_t id = 0; id < 2; ++id) {
-                    const auto part = [](const Scalar* from) { return vec3<Scalar>(from[0], from[1], from[2]); };
-                    const Scalar* planar = compiled.planars[id].value;
-                    is_met =
-                        is_met || naive::strict_quad_distance<Scalar>(
-                                      ray.origin, ray.direction, part(planar + Planar::kCorner),
-                                      part(compiled.surfaces[id].value + SurfaceRow<Scalar>::kCenter),
-                                      part(planar + Planar::kDualU), part(planar + Planar::kDualV)) < kInfinity<Scalar>;
-                }
-            }
-            passed += is_met ? 0 : 1;
+            passed += is_met(compiled, ray) ? 0 : 1;
         }
     }
     return share(passed, aimed_at);
-}
+};
 
 }  // namespace
 
-std::vector<Case> flat_cases() {
-    std::vector<Case> cases;
-    cases.push_back({.id = "far-plane",
-                     .row = "+",
-                     .parameter = "distance of the scene from the origin",
-                     .values = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5},
-                     .measure = "distance to the hit, relative error that 1 % exceed",
-                     .tolerance = 1e-6,
-                     .symptom = "floors and walls float; shadows come loose",
-                     .samples = 20'000,
-                     .methods = {{"n . p = offset, float", Kind::Naive, far_plane<float, OffsetPlane>},
-                                 {"ours, float", Kind::Ours, far_plane<float, OurPlane>},
-                                 {"ours, double", Kind::Ours, far_plane<double, OurPlane>}}});
-    cases.push_back(
-        {.id = "grazing-plane",
-         .row = "+",
-         .parameter = "sine of the angle between ray and plane",
-         .values = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5},
-         .measure = "distance to the hit, relative error that 1 % exceed",
-         .tolerance = 1e-4,
-         .symptom = "the horizon of a floor is ragged",
-         .samples = 20'000,
-         .methods = {{"ours, float", Kind::Ours, grazing_plane<float, OurPlane>},
-                     {"ours, double on float", Kind::Alternative, grazing_plane<float, OurPlaneInDouble>},
-                     {"ours, double", Kind::Ours, grazing_plane<double, OurPlane>}},
-         .held = 3,
-         .limit = "direction . normal cancels to a part of an ulp over the sine: the wider type is the cure"});
-    cases.push_back({.id = "quad-seam",
-                     .row = "+",
-                     .parameter = "distance of the ray's origin, edges about 1",
-                     .values = {1e0, 1e1, 1e2, 1e3},
-                     .measure = "rays at the seam of two quads that pass between them, share",
-                     .tolerance = 0,
-                     .symptom = "bright or dark dots along the edges of a room",
-                     .samples = 100'000,
-                     .methods = {{"coordinates in [0, 1], float", Kind::Naive, seam<float, false>},
-                                 {"ours, float", Kind::Ours, seam<float, true>},
-                                 {"ours, double", Kind::Ours, seam<double, true>}}});
-    return cases;
+CaseMethods flat_cases() {
+    return {{"far-plane", Methods(kFarPlane).naive("n . p = offset, float", kOffsetPlane).ours_in_both(kOurPlane)},
+            {"grazing-plane", Methods(kGrazingPlane)
+                                  .ours<float>("ours, float", kOurPlane)
+                                  .other("ours, double on float", kOurPlaneInDouble)
+                                  .ours<double>("ours, double", kOurPlane)},
+            {"quad-seam", Methods(kSeam).naive("coordinates in [0, 1], float", kStrictQuads).ours_in_both(kOurQuads)}};
 }
 
 }  // namespace raypool::stability

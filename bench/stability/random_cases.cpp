@@ -7,7 +7,7 @@
 
 #include "bench/naive/random.h"
 #include "bench/stability/case.h"
-#include "bench/stability/rays.h"
+#include "bench/stability/methods.h"
 #include "core/math/random.h"
 
 namespace raypool::stability {
@@ -19,8 +19,7 @@ float our_first(std::uint32_t pixel) {
 }
 
 /// Correlation of the first numbers of seeds that are so far apart.
-template <float (*first)(std::uint32_t)>
-double correlation(double apart, std::int64_t seeds) {
+constexpr auto kCorrelation = []<class>(const auto& first, double apart, std::int64_t seeds) {
     const auto distance = static_cast<std::uint32_t>(apart);
     double x = 0, y = 0, xx = 0, yy = 0, xy = 0;
     for (std::uint32_t seed = 1; seed <= static_cast<std::uint32_t>(seeds); ++seed) {
@@ -30,36 +29,41 @@ double correlation(double apart, std::int64_t seeds) {
     }
     const double n = static_cast<double>(seeds);
     return std::abs((xy - x * y / n) / std::sqrt((xx - x * x / n) * (yy - y * y / n)));
-}
+};
 
-/// An image of 32 x 32 whose lines threads share as OpenMP's static schedule does: what a pixel's mean of 16 numbers
-/// is. Pixels that differ from the image of one thread.
-template <bool is_keyed>
-std::vector<float> image_of(int threads) {
+// Ways to draw a sample of a pixel, where a thread has a generator.
+constexpr auto kByThread = [](naive::ThreadGenerator& generator, std::uint32_t, std::uint32_t) {
+    return generator.next();
+};
+constexpr auto kKeyed = [](naive::ThreadGenerator&, std::uint32_t pixel, std::uint32_t sample) {
+    return random_block<float>({pixel, sample}, 0, RandomPurpose::Film, random_seed(0))[0];
+};
+/// An image of 32 x 32 whose lines threads share as OpenMP's static schedule does: what a pixel's sum of 16 numbers is.
+std::vector<float> image_of(const auto& draw, int threads) {
     constexpr int kEdge = 32;
     std::vector<float> image;
     for (int thread = 0; thread < threads; ++thread) {
         naive::ThreadGenerator generator(static_cast<std::uint64_t>(thread));
         for (int pixel = kEdge * thread / threads * kEdge; pixel < kEdge * (thread + 1) / threads * kEdge; ++pixel) {
             float sum = 0;
-            for (std::uint32_t sample = 0; sample < 16; ++sample) {
-                sum += is_keyed ? random_block<float>({static_cast<std::uint32_t>(pixel), sample}, 0,
-                                                      RandomPurpose::Film, random_seed(0))[0]
-                                : generator.next();
-            }
+            for (std::uint32_t sample = 0; sample < 16; ++sample)
+                sum += draw(generator, static_cast<std::uint32_t>(pixel), sample);
             image.push_back(sum);
         }
     }
     return image;
 }
-template <bool is_keyed>
-double changed_pixels(double threads, std::int64_t) {
-    const std::vector<float> one = image_of<is_keyed>(1);
-    const std::vector<float> many = image_of<is_keyed>(static_cast<int>(threads));
-    std::int64_t changed = 0;
-    for (std::size_t i = 0; i < one.size(); ++i) changed += one[i] != many[i] ? 1 : 0;
-    return share(changed, static_cast<std::int64_t>(one.size()));
-}
+/// Pixels that differ from the image of one thread.
+constexpr auto kChangedPixels = []<class>(const auto& draw, double threads, std::int64_t) {
+    const std::vector<float> one = image_of(draw, 1);
+    const std::vector<float> many = image_of(draw, static_cast<int>(threads));
+    std::size_t pixel = 0;
+    return share_of(static_cast<std::int64_t>(one.size()), RandomInputs(0), [&](RandomInputs&) {
+        const bool is_changed = one[pixel] != many[pixel];
+        ++pixel;
+        return is_changed;
+    });
+};
 
 /// A number of the integral over the square (0: smooth; 1: a disc's edge) or over six dimensions in two blocks (2: the
 /// share of the cube below a plane).
@@ -73,8 +77,7 @@ double integrand(int which, std::uint32_t pixel, std::uint32_t sample, const Ran
 constexpr double kIntegrals[] = {(std::numbers::e - 1) * 0.8414709848078965, std::numbers::pi / 8, 0.5};
 
 /// What is left of the RMSE when a pixel gets four times the samples: 4 to the slope fitted from 16 to 4096 of them.
-template <Sampler sampler>
-double left_of_error(double which, std::int64_t) {
+constexpr auto kLeftOfError = []<class>(Sampler sampler, double which, std::int64_t) {
     constexpr std::uint32_t kPixels = 200;
     constexpr std::uint32_t kMost = 4096;
     const int f = static_cast<int>(which);
@@ -91,7 +94,7 @@ double left_of_error(double which, std::int64_t) {
     double slope = 0;  // least squares at -2, -1, 0, 1, 2
     for (int level = 0; level < 5; ++level) slope += (level - 2) * std::log2(squares[level]) / 2 / 10;
     return std::exp2(slope);
-}
+};
 
 template <float (*first)(std::uint32_t)>
 double time_first(std::int64_t calls) {
@@ -111,42 +114,18 @@ double time_block(std::int64_t calls) {
 
 }  // namespace
 
-std::vector<Case> random_cases() {
-    std::vector<Case> cases;
-    cases.push_back({.id = "neighbouring-seeds",
-                     .row = "7a",
-                     .parameter = "distance of two seeds",
-                     .values = {1024, 256, 64, 16, 4, 1},
-                     .measure = "correlation of their first numbers, absolute",
-                     .tolerance = 0.02,
-                     .symptom = "stripes and patterns in place of noise",
-                     .samples = 400'000,
-                     .methods = {{"minstd, seeded by the pixel", Kind::Naive, correlation<naive::minstd_first>,
-                                  time_first<naive::minstd_first>},
-                                 {"xorshift32, seeded by the pixel", Kind::Naive, correlation<naive::xorshift_first>,
-                                  time_first<naive::xorshift_first>},
-                                 {"ours, pcg4d", Kind::Ours, correlation<our_first>, time_block}}});
-    cases.push_back({.id = "seeds-by-thread",
-                     .row = "7a",
-                     .parameter = "threads",
-                     .values = {2, 3, 4, 7, 8},
-                     .measure = "pixels that differ from one thread's, share",
-                     .tolerance = 0,
-                     .symptom = "the image depends on the number of threads",
-                     .methods = {{"a generator a thread", Kind::Naive, changed_pixels<false>},
-                                 {"ours, keyed by pixel and sample", Kind::Ours, changed_pixels<true>}}});
-    cases.push_back({.id = "error-slope",
-                     .row = "7b",
-                     .parameter = "what is integrated: 0 smooth, 1 an edge, 2 an edge in six dimensions",
-                     .values = {0, 1, 2},
-                     .measure = "RMSE left by four times the samples, part",
-                     .tolerance = 0.41,
-                     .symptom = "noise that falls no faster than the square root of the samples",
-                     .methods = {{"independent", Kind::Naive, left_of_error<Sampler::Independent>},
-                                 {"ours, Owen-scrambled Sobol", Kind::Ours, left_of_error<Sampler::Sobol>}},
-                     .held = 2,
-                     .limit = "points in many dimensions are padded from points in four, and gain only a factor"});
-    return cases;
+CaseMethods random_cases() {
+    return {{"neighbouring-seeds",
+             Methods(kCorrelation)
+                 .naive("minstd, seeded by the pixel", naive::minstd_first, time_first<naive::minstd_first>)
+                 .naive("xorshift32, seeded by the pixel", naive::xorshift_first, time_first<naive::xorshift_first>)
+                 .ours("ours, pcg4d", our_first, time_block)},
+            {"seeds-by-thread", Methods(kChangedPixels)
+                                    .naive("a generator a thread", kByThread)
+                                    .ours("ours, keyed by pixel and sample", kKeyed)},
+            {"error-slope", Methods(kLeftOfError)
+                                .naive("independent", Sampler::Independent)
+                                .ours("ours, Owen-scrambled Sobol", Sampler::Sobol)}};
 }
 
 }  // namespace raypool::stability

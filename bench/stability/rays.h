@@ -4,23 +4,20 @@
 
 #include <vector>
 
+#include "bench/stability/methods.h"
 #include "core/geometry/shapes.h"
 #include "core/shading/shade.h"
 #include "tests/core/geometry/aimed_ray.h"
 #include "tests/core/geometry/exact_sphere.h"
-#include "tests/errors.h"
-#include "tests/random_inputs.h"
 
 namespace raypool::stability {
 
 using test::aimed;
-using test::Errors;
 using test::ExactSphere;
 using test::ExactVec;
 using test::Float128;
 using test::narrow;
 using test::perpendicular;
-using test::RandomInputs;
 using test::wide;
 
 /// As many rays at a time as a register holds: what methods are timed with.
@@ -41,11 +38,6 @@ SurfacePoint<Scalar> seen_point(RandomInputs& random, const Vec3<Scalar>& center
         const Scalar t = sphere_distance<Scalar>(ray.origin, ray.direction, center, radius, false);
         if (t < kInfinity<Scalar>) return sphere_point<Scalar>(ray, t, center, radius);
     }
-}
-
-/// A part of `count` that is `of`; 0 where there is nothing to have a part of.
-inline double share(std::int64_t of, std::int64_t count) {
-    return count == 0 ? 0 : static_cast<double>(of) / static_cast<double>(count);
 }
 
 /// The sum over all lanes and calls of what `test(origin, direction)` gives for packets of rays around a unit sphere at

@@ -1,6 +1,7 @@
 // Rows 4a, 4f and 4g: directions that cancel, that leave the surface on the wrong side, and numbers that are not
 // below 1.
 
+#include <algorithm>
 #include <cmath>
 
 #include "bench/naive/random.h"
@@ -12,155 +13,78 @@ namespace raypool::stability {
 
 namespace {
 
-template <class Scalar>
-bool is_unit(const Vec3<Scalar>& v) {
-    return std::abs(v.norm() - 1) < Scalar(1e-3);  // false for NaN
-}
-
-struct NaiveDiffuse {
-    template <class Scalar>
-    static Vec3<Scalar> direction(const Vec3<Scalar>& n, const Vec3<Scalar>& u) {
-        return naive::diffuse_direction<Scalar>(n, u);
-    }
-};
-struct OurDiffuse {
-    template <class Scalar>
-    static Vec3<Scalar> direction(const Vec3<Scalar>& n, const Vec3<Scalar>& u) {
-        return diffuse_direction<Scalar>(n, u);
-    }
-};
+constexpr auto kNaiveDiffuse = [](const auto&... n_and_u) { return naive::diffuse_direction(n_and_u...); };
+constexpr auto kOurDiffuse = [](const auto&... n_and_u) { return diffuse_direction(n_and_u...); };
 /// Points of the unit sphere so close to the opposite of the normal, 0 for the very opposite: what is no direction.
-template <class Scalar, class Diffuse>
-double no_direction(double apart, std::int64_t points) {
-    RandomInputs random(51);
-    std::int64_t bad = 0;
-    for (std::int64_t i = 0; i < points; ++i) {
+constexpr auto kNoDirection = []<class Scalar>(const auto& diffuse, double apart, std::int64_t points) {
+    return share_of(points, RandomInputs(51), [&](RandomInputs& random) {
         const Vec3<double> n = random.direction<double>();
         const Vec3<double> u = -n + apart * random.direction<double>();
-        bad += is_unit<Scalar>(Diffuse::template direction<Scalar>(narrow<Scalar>(n), narrow<Scalar>(u))) ? 0 : 1;
-    }
-    return share(bad, points);
-}
+        const Vec3<Scalar> direction = diffuse(narrow<Scalar>(n), narrow<Scalar>(u));
+        return !(std::abs(direction.norm() - 1) < Scalar(1e-3));  // true for NaN
+    });
+};
 
-struct OurUnit {
-    template <class Scalar>
-    static Vec3<Scalar> of(const Vec3<Scalar>& v) {
-        return unit<Scalar>(v);
-    }
-};
-struct ScaledUnit {
-    template <class Scalar>
-    static Vec3<Scalar> of(const Vec3<Scalar>& v) {
-        return naive::scaled_unit<Scalar>(v);
-    }
-};
+constexpr auto kScaledUnit = [](const auto& v) { return naive::scaled_unit(v); };
+constexpr auto kOurUnit = [](const auto& v) { return unit(v); };
 /// Vectors of length 10^-e and 10^e: how far from 1 the length of what should be unit is.
-template <class Scalar, class Unit>
-double unit_error(double exponent, std::int64_t vectors) {
-    RandomInputs random(52);
-    Errors errors;
-    for (std::int64_t i = 0; i < vectors; ++i) {
+constexpr auto kUnitError = []<class Scalar>(const auto& made_unit, double exponent, std::int64_t vectors) {
+    const Errors errors = errors_of(vectors, RandomInputs(52), [&](RandomInputs& random, Errors& all) {
         const double length = std::pow(10, random.one_in(2) ? exponent : -exponent);
         const Vec3<Scalar> v = narrow<Scalar>(length * random.direction<double>());
-        errors.add(wide<Scalar>(Unit::template of<Scalar>(v)).norm() - 1);
-    }
-    return std::min(errors.max(), 1.0);
-}
+        all.add(wide<Scalar>(made_unit(v)).norm() - 1);
+    });
+    return quantile_up_to_one(errors, 1);
+};
 
-/// Directions of a fuzzy mirror that go below the surface, against what the model says: part of a sphere of that
-/// radius around the mirrored direction lies below. A loss of the model, the same for every method.
+/// Directions of a fuzzy mirror that go below the surface: light that is lost.
 template <class Scalar>
-double fuzz_below(double degrees, std::int64_t samples, double fuzz) {
-    RandomInputs random(53);
+double lost_below(double fuzz, double degrees, std::int64_t samples) {
     const double angle = degrees * std::numbers::pi / 180;
     const Vec3<Scalar> normal = vec3<Scalar>(0, 1, 0);
     const Vec3<Scalar> arriving = narrow<Scalar>(Vec3<double>(std::sin(angle), -std::cos(angle), 0));
     const Vec3<Scalar> mirrored = mirror_direction<Scalar>(arriving, normal);
-    std::int64_t below = 0;
-    for (std::int64_t i = 0; i < samples; ++i) {
+    return share_of(samples, RandomInputs(53), [&](RandomInputs& random) {
         const auto [u, v] = random.unit_square<Scalar>();
         const Vec3<Scalar> out =
             fuzzy_direction<Scalar>(mirrored, static_cast<Scalar>(fuzz), unit_sphere<Scalar>(u, v));
-        below += dot<Scalar>(out, normal) <= 0 ? 1 : 0;
-    }
-    return share(below, samples);
+        return dot<Scalar>(out, normal) <= 0;
+    });
+}
+/// The loss is the model's, the same for every method: a part of a sphere of radius `fuzz` around the mirrored
+/// direction lies below. Ours must lose just that.
+std::vector<Method> fuzz_methods(double fuzz) {
+    const auto lost = [fuzz]<class Scalar>(const auto& judge, double degrees, std::int64_t samples) {
+        const double cosine = std::cos(degrees * std::numbers::pi / 180);
+        return judge(lost_below<Scalar>(fuzz, degrees, samples), std::max(0.0, (1 - cosine / fuzz) / 2));
+    };
+    const auto absorbed = [](double loss, double) { return loss; };
+    const auto from_expected = [](double loss, double expected) { return std::abs(loss - expected); };
+    return Methods(lost)
+        .other("what is absorbed", absorbed)
+        .ours<float>("ours, float, from the model's share", from_expected)
+        .ours<double>("ours, double, from the model's share", from_expected);
 }
 
-/// The greatest 2^-k words of 32 bits that make the float 1: a number that is to be below 1.
-template <class ToUnit>
-double not_below_one(double words, std::int64_t, ToUnit to_unit) {
-    const auto count = static_cast<std::int64_t>(words);
-    std::int64_t ones = 0;
-    for (std::int64_t i = 1; i <= count; ++i) ones += to_unit(static_cast<std::uint32_t>(-i)) < 1.0F ? 0 : 1;
-    return share(ones, count);
-}
+/// The greatest words of 32 bits that make the float 1: a number that is to be below 1.
+constexpr auto kNotBelowOne = []<class>(const auto& to_unit, double words, std::int64_t) {
+    std::uint32_t word = 0;
+    return share_of(static_cast<std::int64_t>(words), RandomInputs(0),
+                    [&](RandomInputs&) { return !(to_unit(--word) < 1.0F); });
+};
 
 }  // namespace
 
-std::vector<Case> scattering_cases() {
-    std::vector<Case> cases;
-    cases.push_back({.id = "diffuse-cancels",
-                     .row = "4a",
-                     .parameter = "distance from the normal's opposite",
-                     .values = {1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 0},
-                     .measure = "directions that are none, share",
-                     .tolerance = 0,
-                     .symptom = "not-a-numbers: black or white pixels that never go away",
-                     .samples = 50'000,
-                     .methods = {{"no guard, float", Kind::Naive, no_direction<float, NaiveDiffuse>},
-                                 {"ours, float", Kind::Ours, no_direction<float, OurDiffuse>},
-                                 {"ours, double", Kind::Ours, no_direction<double, OurDiffuse>}}});
-    cases.push_back(
-        {.id = "unit-vector",
-         .row = "4a",
-         .parameter = "e: lengths of 10^-e and 10^e",
-         .values = {0, 5, 10, 15, 18, 20, 23, 30},
-         .measure = "length of the unit vector, greatest error",
-         .tolerance = 3e-7,
-         .symptom = "scenes in the wrong unit turn black",
-         .samples = 20'000,
-         .methods = {{"scaled by the greatest first, float", Kind::Alternative, unit_error<float, ScaledUnit>},
-                     {"ours, float", Kind::Ours, unit_error<float, OurUnit>},
-                     {"ours, double", Kind::Ours, unit_error<double, OurUnit>}},
-         .held = 5,
-         .limit = "lengths whose squares are no normal numbers of their type are outside of unit()'s range"});
-    for (const double fuzz : {0.3, 1.0}) {
-        const auto wrong = [fuzz](auto scalar) {
-            return [fuzz](double degrees, std::int64_t samples) {
-                const double cosine = std::cos(degrees * std::numbers::pi / 180);
-                const double expected = std::max(0.0, (1 - cosine / fuzz) / 2);
-                return std::abs(fuzz_below<decltype(scalar)>(degrees, samples, fuzz) - expected);
-            };
-        };
-        const auto lost = [fuzz](double degrees, std::int64_t samples) {
-            return fuzz_below<float>(degrees, samples, fuzz);
-        };
-        cases.push_back({.id = fuzz < 1 ? "fuzz-below-0.3" : "fuzz-below-1",
-                         .row = "4f",
-                         .parameter = "angle of arrival, degrees",
-                         .values = {0, 30, 60, 75, 85, 89},
-                         .measure = "light absorbed below the surface, and its distance from the model's share",
-                         .tolerance = 0.02,
-                         .symptom = "a white fuzzy mirror is grey at grazing angles; the model's doing",
-                         .samples = 100'000,
-                         .methods = {{"what is absorbed", Kind::Alternative, lost},
-                                     {"ours, float, from the model's share", Kind::Ours, wrong(0.0F)},
-                                     {"ours, double, from the model's share", Kind::Ours, wrong(0.0)}}});
-    }
-    const auto naive_word = [](double words, std::int64_t n) { return not_below_one(words, n, naive::word_to_unit); };
-    const auto our_word = [](double words, std::int64_t n) {
-        return not_below_one(words, n, naive::high_bits_to_unit);
-    };
-    cases.push_back(
-        {.id = "below-one",
-         .row = "4g",
-         .parameter = "words of 32 bits, from the top",
-         .values = {65'536, 4096, 512, 128, 1},
-         .measure = "numbers that are 1 and not below it, share",
-         .tolerance = 0,
-         .symptom = "one sample in 33 million leaves its table, its pixel or the sphere",
-         .methods = {{"word / 2^32, float", Kind::Naive, naive_word}, {"ours, 24 bits, float", Kind::Ours, our_word}}});
-    return cases;
+CaseMethods scattering_cases() {
+    return {
+        {"diffuse-cancels", Methods(kNoDirection).naive("no guard, float", kNaiveDiffuse).ours_in_both(kOurDiffuse)},
+        {"unit-vector",
+         Methods(kUnitError).other("scaled by the greatest first, float", kScaledUnit).ours_in_both(kOurUnit)},
+        {"fuzz-below-0.3", fuzz_methods(0.3)},
+        {"fuzz-below-1", fuzz_methods(1)},
+        {"below-one", Methods(kNotBelowOne)
+                          .naive("word / 2^32, float", naive::word_to_unit)
+                          .ours("ours, 24 bits, float", naive::high_bits_to_unit)}};
 }
 
 }  // namespace raypool::stability

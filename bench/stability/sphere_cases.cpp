@@ -10,314 +10,197 @@ namespace raypool::stability {
 
 namespace {
 
-struct HalfB {
-    template <class Real>
-    static Real distance(const Vec3<Real>& o, const Vec3<Real>& d, const Vec3<Real>& center, const Real& radius) {
-        return naive::half_b_distance<Real>(o, d, center, radius, Real(0));
-    }
+// Ways to find the distance along a ray to a sphere.
+constexpr auto kHalfB = [](const auto&... ray_and_sphere) { return naive::half_b_distance(ray_and_sphere...); };
+constexpr auto kInterval = [](const auto&... ray_and_sphere) { return naive::interval_distance(ray_and_sphere...); };
+constexpr auto kHaines = [](const auto&... ray_and_sphere) { return naive::haines_distance(ray_and_sphere...); };
+constexpr auto kOurs = []<class Real>(const Vec3<Real>& origin, const Vec3<Real>& direction, const Vec3<Real>& center,
+                                      const Real& radius) {
+    return sphere_distance<Real>(origin, direction, center, radius, Mask<Real>(false));
 };
-struct Interval {
-    template <class Real>
-    static Real distance(const Vec3<Real>& o, const Vec3<Real>& d, const Vec3<Real>& center, const Real& radius) {
-        return naive::interval_distance<Real>(o, d, center, radius, Real(0));
-    }
-};
-struct Haines {
-    template <class Real>
-    static Real distance(const Vec3<Real>& o, const Vec3<Real>& d, const Vec3<Real>& center, const Real& radius) {
-        return naive::haines_distance<Real>(o, d, center, radius, Real(0));
-    }
-};
-struct Ours {
-    template <class Real>
-    static Real distance(const Vec3<Real>& o, const Vec3<Real>& d, const Vec3<Real>& center, const Real& radius) {
-        return sphere_distance<Real>(o, d, center, radius, Mask<Real>(false));
-    }
+/// Inputs are in single precision, all else is in double.
+constexpr auto kDoubleOnFloat = [](const auto& origin, const auto& direction, const auto& center, float radius) {
+    return kOurs(wide(origin), wide(direction), wide(center), static_cast<double>(radius));
 };
 
 /// The sphere is read from memory: a compiler that knew it would fold half of the test away.
-template <class Test>
-double time_test(std::int64_t calls) {
-    static volatile float coordinate = 0;
-    static volatile float radius = 1;
-    const Vec3<Packet> center = Vec3<Packet>::Constant(Packet(coordinate));
-    const Packet r(radius);
-    return time_rays(calls, [&](const Vec3<Packet>& o, const Vec3<Packet>& d) {
-        return Test::template distance<Packet>(o, d, center, r);
-    });
+template <class Way>
+auto timed(Way way) {
+    return [way](std::int64_t calls) {
+        static volatile float coordinate = 0;
+        static volatile float radius = 1;
+        const Vec3<Packet> center = Vec3<Packet>::Constant(Packet(coordinate));
+        const Packet r(radius);
+        return time_rays(calls, [&](const Vec3<Packet>& o, const Vec3<Packet>& d) { return way(o, d, center, r); });
+    };
 }
 
-/// A hit as `Test` finds it in Compute, for a ray and a sphere whose numbers are Input.
-template <class Input, class Compute, class Test>
-Compute found(const Ray<Input>& ray, const Vec3<Input>& center, Input radius) {
-    return Test::template distance<Compute>(ray.origin.template cast<Compute>(), ray.direction.template cast<Compute>(),
-                                            center.template cast<Compute>(), static_cast<Compute>(radius));
-}
+/// A ray against a sphere at the origin: what is true, and what a way finds.
+template <class Scalar, class Way>
+struct Trial {
+    Ray<Scalar> ray;
+    ExactSphere exact;
+    decltype(std::declval<Way>()(ray.origin, ray.direction, ray.origin, Scalar())) t;
 
-/// What became of rays whose lines pass a unit sphere at 0 to 2 radii.
-struct Judgement {
-    std::int64_t misses = 0;  ///< false ones
-    std::int64_t hits = 0;    ///< false ones
-    Errors distance;          ///< of the true hits, relative
-    Errors normal;            ///< of the true hits, radians
-};
-template <class Input, class Compute, class Test>
-Judgement judge(double distance, std::int64_t rays) {
-    RandomInputs random(11);
-    Judgement judgement;
-    const Vec3<Input> center = vec3<Input>(0, 0, 0);
-    for (std::int64_t i = 0; i < rays; ++i) {
-        const Ray<Input> ray = aimed<Input>(random, center, 1, distance, random.uniform(0, 2));
-        const ExactSphere exact(ray.origin, ray.direction, center, Input(1));
-        const Compute t = found<Input, Compute, Test>(ray, center, 1);
-        const bool is_hit = t < kInfinity<Compute>;
-        judgement.misses += exact.is_met() && !is_hit ? 1 : 0;
-        judgement.hits += !exact.is_met() && is_hit ? 1 : 0;
-        if (!exact.is_met() || !is_hit) continue;
-        judgement.distance.add((t - exact.first) / exact.first);
+    Trial(const Ray<Scalar>& traced, const Way& way, const Vec3<Scalar>& center, Scalar radius)
+        : ray(traced),
+          exact(ray.origin, ray.direction, center, radius),
+          t(way(ray.origin, ray.direction, center, radius)) {}
+    [[nodiscard]] bool is_hit() const { return t < kInfinity<decltype(t)>; }
+    [[nodiscard]] Float128 relative_error() const { return (t - exact.first) / exact.first; }
+    /// How far the hit is from the true one, which for a unit sphere is the angle between the normals.
+    [[nodiscard]] double apart() const {
         const auto point = [&](Float128 at) {
-            const ExactVec p = ExactVec::of<Input>(ray.origin) + at * ExactVec::of<Input>(ray.direction);
+            const ExactVec p = ExactVec::of<Scalar>(ray.origin) + at * ExactVec::of<Scalar>(ray.direction);
             return Vec3<double>(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
         };
-        judgement.normal.add((point(t) - point(exact.first)).norm());
+        return (point(t) - point(exact.first)).norm();
     }
-    return judgement;
-}
-
-template <class Input, class Compute, class Test>
-double flips(double distance, std::int64_t rays) {
-    const Judgement judgement = judge<Input, Compute, Test>(distance, rays);
-    return share(judgement.misses + judgement.hits, rays);
-}
-/// The error that one hit in a hundred exceeds; 1 where nothing was hit.
-template <class Input, class Compute, class Test>
-double distance_error(double distance, std::int64_t rays) {
-    const Errors errors = judge<Input, Compute, Test>(distance, rays).distance;
-    return errors.count() == 0 ? 1 : std::min(errors.quantile(0.99), 1.0);
-}
-template <class Input, class Compute, class Test>
-double normal_error(double distance, std::int64_t rays) {
-    const Errors errors = judge<Input, Compute, Test>(distance, rays).normal;
-    return errors.count() == 0 ? 1 : errors.quantile(0.99);
-}
-
-/// Rays that pass the centre of a unit sphere, 10 away, at the radius less a part: those missed, and what is wrong of
-/// the others' distance.
-struct Grazing {
-    std::int64_t rays = 0;
-    std::int64_t missed = 0;
-    Errors distance;
 };
-template <class Input, class Compute, class Test>
-Grazing graze(double part, std::int64_t rays) {
-    RandomInputs random(12);
-    Grazing grazing;
-    const Vec3<Input> center = vec3<Input>(0, 0, 0);
-    for (std::int64_t i = 0; i < rays; ++i) {
-        const Ray<Input> ray = aimed<Input>(random, center, 1, 10, 1 - part);
-        const ExactSphere exact(ray.origin, ray.direction, center, Input(1));
-        // The direction was rounded: take the rays that still graze by about that part.
-        if (std::abs(1 - static_cast<double>(exact.impact) - part) > 0.5 * part) continue;
-        ++grazing.rays;
-        const Compute t = found<Input, Compute, Test>(ray, center, 1);
-        if (t < kInfinity<Compute>) {
-            grazing.distance.add((t - exact.first) / exact.first);
-        } else {
-            ++grazing.missed;
-        }
-    }
-    return grazing;
-}
-template <class Input, class Compute, class Test>
-double grazing_misses(double part, std::int64_t rays) {
-    const Grazing grazing = graze<Input, Compute, Test>(part, rays);
-    return share(grazing.missed, grazing.rays);
-}
-template <class Input, class Compute, class Test>
-double grazing_distance(double part, std::int64_t rays) {
-    const Grazing grazing = graze<Input, Compute, Test>(part, rays);
-    return grazing.distance.count() == 0 ? 1 : std::min(grazing.distance.max(), 1.0);
+template <class Scalar, class Way>
+Trial<Scalar, Way> unit_sphere_trial(const Ray<Scalar>& ray, const Way& way) {
+    return {ray, way, vec3<Scalar>(0, 0, 0), Scalar(1)};
 }
 
+/// A ray from that far away whose line passes a unit sphere at 0 to 2 radii.
+template <class Scalar, class Way>
+auto far_trial(RandomInputs& random, double distance, const Way& way) {
+    return unit_sphere_trial(aimed<Scalar>(random, vec3<Scalar>(0, 0, 0), 1, distance, random.uniform(0, 2)), way);
+}
+constexpr auto kFlips = []<class Scalar>(const auto& way, double distance, std::int64_t rays) {
+    return share_of(rays, RandomInputs(11), [&](RandomInputs& random) {
+        const auto trial = far_trial<Scalar>(random, distance, way);
+        return trial.exact.is_met() != trial.is_hit();
+    });
+};
+constexpr auto kDistanceError = []<class Scalar>(const auto& way, double distance, std::int64_t rays) {
+    const Errors errors = errors_of(rays, RandomInputs(11), [&](RandomInputs& random, Errors& all) {
+        const auto trial = far_trial<Scalar>(random, distance, way);
+        if (trial.exact.is_met() && trial.is_hit()) all.add(trial.relative_error());
+    });
+    return quantile_up_to_one(errors, 0.99);
+};
+constexpr auto kNormalError = []<class Scalar>(const auto& way, double distance, std::int64_t rays) {
+    const Errors errors = errors_of(rays, RandomInputs(11), [&](RandomInputs& random, Errors& all) {
+        const auto trial = far_trial<Scalar>(random, distance, way);
+        if (trial.exact.is_met() && trial.is_hit()) all.add(trial.apart());
+    });
+    return quantile_up_to_one(errors, 0.99);
+};
+
+/// A ray that passes the centre of a unit sphere, 10 away, at the radius less a part. The direction was rounded, so
+/// some rays do not graze by about that part any more: there is no trial of them.
+template <class Scalar, class Way>
+std::optional<Trial<Scalar, Way>> grazing_trial(RandomInputs& random, double part, const Way& way) {
+    const auto trial = unit_sphere_trial(aimed<Scalar>(random, vec3<Scalar>(0, 0, 0), 1, 10, 1 - part), way);
+    if (std::abs(1 - static_cast<double>(trial.exact.impact) - part) > 0.5 * part) return {};
+    return trial;
+}
+constexpr auto kGrazingMisses = []<class Scalar>(const auto& way, double part, std::int64_t rays) {
+    return share_of(rays, RandomInputs(12), [&](RandomInputs& random) -> std::optional<bool> {
+        const auto trial = grazing_trial<Scalar>(random, part, way);
+        if (!trial) return {};
+        return !trial->is_hit();
+    });
+};
+constexpr auto kGrazingDistance = []<class Scalar>(const auto& way, double part, std::int64_t rays) {
+    const Errors errors = errors_of(rays, RandomInputs(12), [&](RandomInputs& random, Errors& all) {
+        const auto trial = grazing_trial<Scalar>(random, part, way);
+        if (trial && trial->is_hit()) all.add(trial->relative_error());
+    });
+    return quantile_up_to_one(errors, 1);
+};
+
+/// From the eye to a point of the plane y = 0.
+template <class Scalar>
+Ray<Scalar> ground_ray(RandomInputs& random, const Vec3<Scalar>& eye, double half_edge) {
+    Vec3<double> target = random.point<double>(half_edge);
+    target[1] = 0;
+    return {eye, narrow<Scalar>((target - wide<Scalar>(eye)).normalized()), 0};
+}
 /// The ground, a sphere whose top is the origin, seen from (13, 2, 3).
-template <class Input, class Compute, class Test>
-double ground_distance(double radius, std::int64_t rays) {
-    RandomInputs random(13);
-    const Vec3<Input> eye = vec3<Input>(13, 2, 3);
-    const Vec3<Input> center = vec3<Input>(0, static_cast<Input>(-radius), 0);
-    Errors errors;
-    for (std::int64_t i = 0; i < rays; ++i) {
-        Vec3<double> target = random.point<double>(11);
-        target[1] = 0;
-        const Ray<Input> ray{eye, narrow<Input>((target - wide<Input>(eye)).normalized()), 0};
-        const ExactSphere exact(eye, ray.direction, center, static_cast<Input>(radius));
-        if (!exact.is_met()) continue;
-        const Compute t = found<Input, Compute, Test>(ray, center, static_cast<Input>(radius));
-        errors.add((t - exact.first) / exact.first);
-    }
-    return std::min(errors.quantile(0.99), 1.0);
-}
-
-/// How a hit becomes a point of the surface.
-struct AlongRay {
-    static Vec3<float> point(const Ray<float>& ray, float t, const Vec3<float>&, float) {
-        return along<float>(ray.origin, t, ray.direction);
-    }
-};
-struct AlwaysReprojected {
-    static Vec3<float> point(const Ray<float>& ray, float t, const Vec3<float>& center, float radius) {
-        const Vec3<float> p = along<float>(ray.origin, t, ray.direction);
-        return along<float>(center, radius, unit<float>(Vec3<float>(p - center)));
-    }
-};
-struct OurPoint {
-    static Vec3<float> point(const Ray<float>& ray, float t, const Vec3<float>& center, float radius) {
-        return sphere_point<float>(ray, t, center, radius).position;
-    }
+constexpr auto kGroundDistance = []<class Scalar>(const auto& way, double radius, std::int64_t rays) {
+    const Vec3<Scalar> eye = vec3<Scalar>(13, 2, 3);
+    const Vec3<Scalar> center = vec3<Scalar>(0, static_cast<Scalar>(-radius), 0);
+    const Errors errors = errors_of(rays, RandomInputs(13), [&](RandomInputs& random, Errors& all) {
+        const Trial trial(ground_ray<Scalar>(random, eye, 11), way, center, static_cast<Scalar>(radius));
+        if (trial.exact.is_met()) all.add(trial.relative_error());
+    });
+    return quantile_up_to_one(errors, 0.99);
 };
 
-/// How far off the sphere the point is, over the radius.
-double off_sphere(const Vec3<float>& p, const Vec3<float>& center, float radius) {
-    const Float128 distance = (ExactVec::of<float>(p) - ExactVec::of<float>(center)).norm();
-    return std::abs(static_cast<double>(distance / radius - 1));
+// Ways to make a point of the surface out of a hit.
+constexpr auto kAlongRay = [](const Ray<float>& ray, float t, const Vec3<float>&, float) {
+    return along<float>(ray.origin, t, ray.direction);
+};
+constexpr auto kAlwaysReprojected = [](const Ray<float>& ray, float t, const Vec3<float>& center, float radius) {
+    return along<float>(center, radius, unit<float>(Vec3<float>(kAlongRay(ray, t, center, radius) - center)));
+};
+constexpr auto kOurPoint = [](const Ray<float>& ray, float t, const Vec3<float>& center, float radius) {
+    return sphere_point<float>(ray, t, center, radius).position;
+};
+/// Both steps, a distance and its point: how far off the sphere the point is, over the radius.
+template <class Distance, class Point>
+auto off_sphere(Distance distance, Point point) {
+    return [=](const Ray<float>& ray, const Vec3<float>& center, float radius, Errors& errors) {
+        const float t = distance(ray.origin, ray.direction, center, radius);
+        if (!(t < kInfinity<float>)) return;
+        const ExactVec p = ExactVec::of<float>(point(ray, t, center, radius));
+        errors.add((p - ExactVec::of<float>(center)).norm() / radius - 1);
+    };
 }
-template <class Test, class Point>
-double far_point(double distance, std::int64_t rays) {
-    RandomInputs random(14);
-    const Vec3<float> center = vec3<float>(0, 0, 0);
-    Errors errors;
-    for (std::int64_t i = 0; i < rays; ++i) {
-        const Ray<float> ray = aimed<float>(random, center, 1, distance, random.uniform(0, 1));
-        const float t = found<float, float, Test>(ray, center, 1.0F);
-        if (t < kInfinity<float>) errors.add(off_sphere(Point::point(ray, t, center, 1), center, 1));
-    }
-    return errors.quantile(0.99);
-}
-template <class Point>
-double ground_point(double radius, std::int64_t rays) {
-    RandomInputs random(15);
-    const auto r = static_cast<float>(radius);
-    const Vec3<float> eye = vec3<float>(1.3F, 0.2F, 0.3F);
-    const Vec3<float> center = vec3<float>(0, -r, 0);
-    Errors errors;
-    for (std::int64_t i = 0; i < rays; ++i) {
-        Vec3<double> target = random.point<double>(1);
-        target[1] = 0;
-        const Ray<float> ray{eye, narrow<float>((target - wide<float>(eye)).normalized()), 0};
-        const float t = found<float, float, Ours>(ray, center, r);
-        if (t < kInfinity<float>) errors.add(off_sphere(Point::point(ray, t, center, r), center, r));
-    }
-    return errors.quantile(0.99);
-}
+constexpr auto kFarPoint = []<class Scalar>(const auto& way, double distance, std::int64_t rays) {
+    const Vec3<Scalar> center = vec3<Scalar>(0, 0, 0);
+    const auto judge = [&](RandomInputs& random, Errors& errors) {
+        way(aimed<Scalar>(random, center, 1, distance, random.uniform(0, 1)), center, 1, errors);
+    };
+    return errors_of(rays, RandomInputs(14), judge).quantile(0.99);
+};
+constexpr auto kGroundPoint = []<class Scalar>(const auto& way, double radius, std::int64_t rays) {
+    const auto r = static_cast<Scalar>(radius);
+    const auto judge = [&](RandomInputs& random, Errors& errors) {
+        way(ground_ray(random, vec3<Scalar>(1.3F, 0.2F, 0.3F), 1), vec3<Scalar>(0, -r, 0), r, errors);
+    };
+    return errors_of(rays, RandomInputs(15), judge).quantile(0.99);
+};
 
 }  // namespace
 
-std::vector<Case> sphere_cases() {
-    const std::vector<double> distances{1e1, 1e2, 1e3, 1e4, 1e5, 1e6};
-    std::vector<Case> cases;
-    cases.push_back({.id = "far-sphere",
-                     .row = "1a",
-                     .parameter = "distance / radius",
-                     .values = distances,
-                     .measure = "rays that miss or hit falsely, share",
-                     .tolerance = 0,
-                     .symptom = "far spheres fray, swell or vanish",
-                     .samples = 20'000,
-                     .methods = {{"half-b, float", Kind::Naive, flips<float, float, HalfB>, time_test<HalfB>},
-                                 {"intervals that reject, float", Kind::Naive, flips<float, float, Interval>},
-                                 {"ours, float", Kind::Ours, flips<float, float, Ours>, time_test<Ours>},
-                                 {"ours, double on float", Kind::Alternative, flips<float, double, Ours>}},
-                     .held = 3,
-                     .limit = "a direction rounded to float misses its aim by a part of the radius"});
-    cases.push_back({.id = "far-sphere-distance",
-                     .row = "1a",
-                     .parameter = "distance / radius",
-                     .values = distances,
-                     .measure = "distance to the hit, relative error that 1 % exceed",
-                     .tolerance = 4e-7,
-                     .symptom = "far spheres are shaded with wrong normals",
-                     .samples = 20'000,
-                     .methods = {{"half-b, float", Kind::Naive, distance_error<float, float, HalfB>},
-                                 {"ours, float", Kind::Ours, distance_error<float, float, Ours>},
-                                 {"ours, double on float", Kind::Alternative, distance_error<float, double, Ours>}}});
-    cases.push_back({.id = "grazing",
-                     .row = "1b",
-                     .parameter = "part of the radius inside the edge",
-                     .values = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6},
-                     .measure = "true hits that are missed, share",
-                     .tolerance = 0,
-                     .symptom = "silhouettes lose their edge",
-                     .samples = 20'000,
-                     .methods = {{"half-b, float", Kind::Naive, grazing_misses<float, float, HalfB>},
-                                 {"intervals that reject, float", Kind::Naive, grazing_misses<float, float, Interval>},
-                                 {"ours, float", Kind::Ours, grazing_misses<float, float, Ours>},
-                                 {"ours, double on float", Kind::Alternative, grazing_misses<float, double, Ours>}}});
-    cases.push_back({.id = "grazing-distance",
-                     .row = "1b",
-                     .parameter = "part of the radius inside the edge",
-                     .values = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6},
-                     .measure = "distance to the hit, greatest relative error",
-                     .tolerance = 5e-5,
-                     .symptom = "edges are shaded with wrong normals",
-                     .samples = 20'000,
-                     .methods = {{"half-b, float", Kind::Naive, grazing_distance<float, float, HalfB>},
-                                 {"ours, float", Kind::Ours, grazing_distance<float, float, Ours>},
-                                 {"ours, double on float", Kind::Alternative, grazing_distance<float, double, Ours>}}});
-    cases.push_back({.id = "ground-sphere",
-                     .row = "1c",
-                     .parameter = "radius of the ground",
-                     .values = {1e1, 1e2, 1e3, 1e4, 1e5, 1e6},
-                     .measure = "distance to the hit, relative error that 1 % exceed",
-                     .tolerance = 1e-5,
-                     .symptom = "the ground breaks into steps; shadows and checkers shift",
-                     .samples = 20'000,
-                     .methods = {{"half-b, float", Kind::Naive, ground_distance<float, float, HalfB>},
-                                 {"Haines with f.f - r^2, float", Kind::Naive, ground_distance<float, float, Haines>,
-                                  time_test<Haines>},
-                                 {"ours, float", Kind::Ours, ground_distance<float, float, Ours>},
-                                 {"ours, double on float", Kind::Alternative, ground_distance<float, double, Ours>}}});
-    cases.push_back({.id = "reprojection",
-                     .row = "1d",
-                     .parameter = "distance / radius",
-                     .values = {1, 1e1, 1e2, 1e3, 1e4},
-                     .measure = "hit off the sphere over the radius, that 1 % exceed",
-                     .tolerance = 1.5e-7,
-                     .symptom = "bounces start inside or above the surface: acne, leaks",
-                     .samples = 20'000,
-                     .methods = {{"half-b, along the ray, float", Kind::Naive, far_point<HalfB, AlongRay>},
-                                 {"ours, along the ray, float", Kind::Naive, far_point<Ours, AlongRay>},
-                                 {"ours, float", Kind::Ours, far_point<Ours, OurPoint>}}});
-    cases.push_back({.id = "reprojection-ground",
-                     .row = "1d",
-                     .parameter = "radius of the ground",
-                     .values = {1e1, 1e2, 1e3},
-                     .measure = "hit off the sphere over the radius, that 1 % exceed",
-                     .tolerance = 6e-8,
-                     .symptom = "what stands on a huge ground floats or sinks",
-                     .samples = 20'000,
-                     .methods = {{"always reprojected, float", Kind::Naive, ground_point<AlwaysReprojected>},
-                                 {"ours, float", Kind::Ours, ground_point<OurPoint>}}});
-    cases.push_back({.id = "far-sphere-double",
-                     .row = "1e",
-                     .parameter = "distance / radius",
-                     .values = {1e3, 1e4, 1e5, 1e6, 1e7},
-                     .measure = "rays that miss or hit falsely, share",
-                     .tolerance = 0,
-                     .symptom = "double moves the failure away, no more",
-                     .samples = 20'000,
-                     .methods = {{"half-b, double", Kind::Naive, flips<double, double, HalfB>},
-                                 {"ours, double", Kind::Ours, flips<double, double, Ours>}}});
-    cases.push_back({.id = "far-sphere-normal",
-                     .row = "1e",
-                     .parameter = "distance / radius",
-                     .values = {1e3, 1e4, 1e5, 1e6, 1e7},
-                     .measure = "error of the normal, radians, that 1 % exceed",
-                     .tolerance = 1e-8,
-                     .symptom = "far spheres are shaded with wrong normals",
-                     .samples = 20'000,
-                     .methods = {{"half-b, double", Kind::Naive, normal_error<double, double, HalfB>},
-                                 {"ours, double", Kind::Ours, normal_error<double, double, Ours>}}});
-    return cases;
+CaseMethods sphere_cases() {
+    return {{"far-sphere", Methods(kFlips)
+                               .naive("half-b, float", kHalfB, timed(kHalfB))
+                               .naive("intervals that reject, float", kInterval)
+                               .ours("ours, float", kOurs, timed(kOurs))
+                               .other("ours, double on float", kDoubleOnFloat)},
+            {"far-sphere-distance", Methods(kDistanceError)
+                                        .naive("half-b, float", kHalfB)
+                                        .ours("ours, float", kOurs)
+                                        .other("ours, double on float", kDoubleOnFloat)},
+            {"grazing", Methods(kGrazingMisses)
+                            .naive("half-b, float", kHalfB)
+                            .naive("intervals that reject, float", kInterval)
+                            .ours("ours, float", kOurs)
+                            .other("ours, double on float", kDoubleOnFloat)},
+            {"grazing-distance", Methods(kGrazingDistance)
+                                     .naive("half-b, float", kHalfB)
+                                     .ours("ours, float", kOurs)
+                                     .other("ours, double on float", kDoubleOnFloat)},
+            {"ground-sphere", Methods(kGroundDistance)
+                                  .naive("half-b, float", kHalfB)
+                                  .naive("Haines with f.f - r^2, float", kHaines, timed(kHaines))
+                                  .ours("ours, float", kOurs)
+                                  .other("ours, double on float", kDoubleOnFloat)},
+            {"reprojection", Methods(kFarPoint)
+                                 .naive("half-b, along the ray, float", off_sphere(kHalfB, kAlongRay))
+                                 .naive("ours, along the ray, float", off_sphere(kOurs, kAlongRay))
+                                 .ours("ours, float", off_sphere(kOurs, kOurPoint))},
+            {"reprojection-ground", Methods(kGroundPoint)
+                                        .naive("always reprojected, float", off_sphere(kOurs, kAlwaysReprojected))
+                                        .ours("ours, float", off_sphere(kOurs, kOurPoint))},
+            {"far-sphere-double",
+             Methods(kFlips).naive<double>("half-b, double", kHalfB).ours<double>("ours, double", kOurs)},
+            {"far-sphere-normal",
+             Methods(kNormalError).naive<double>("half-b, double", kHalfB).ours<double>("ours, double", kOurs)}};
 }
 
 }  // namespace raypool::stability

@@ -10,12 +10,12 @@
 
 #include "bench/accuracy/reference.h"
 #include "bench/studies/pass_log.h"
+#include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/replay_ways.h"
 #include "bench/studies/runner.h"
-#include "bench/studies/studies.h"
 #include "core/base/error.h"
 #include "core/runtime/adaptive.h"
+#include "core/runtime/settings_text.h"
 #include "core/scene/scene_reader.h"
 #include "recursive/engine.h"
 #include "wavefront/engine.h"
@@ -42,7 +42,7 @@ const std::vector<Target> kTargets{{"half_sky", {0.008, 0.004}},
                                    {"cornell", {0.15, 0.075}},
                                    {"glass_stack", {0.025, 0.0125}}};
 
-struct Plan {
+struct AdaptivePlan {
     std::int64_t width;
     std::int64_t half_spp;
     int seeds;
@@ -51,13 +51,13 @@ struct Plan {
     int load_threads;
 };
 
-Plan plan_of(const StudyOptions& options) {
-    return {choose(options.width, options.is_quick, 96, 240),
-            32 * choose(options.spp, options.is_quick, 64, 256),
-            static_cast<int>(choose(options.repeats, options.is_quick, 5, 12)),
+AdaptivePlan adaptive_plan(const StudyOptions& options) {
+    return {choose(options, options.width, {96, 240}),
+            32 * choose(options, options.spp, {64, 256}),
+            static_cast<int>(choose(options, options.repeats, {5, 12})),
             options.seed,
             1,
-            static_cast<int>(choose(options.threads, false, 0, 8))};
+            options.threads != 0 ? options.threads : 8};
 }
 
 /// What a render took and made.
@@ -91,170 +91,142 @@ Made make_adaptive(const Engine& engine, const CompiledScene<float>& scene, Rend
 /// Ways to share out the pixels of a pass. Static ones fix beforehand who does what, so that they can be counted with
 /// any number of threads; pools whose threads take lines as they ask for them run on the cores that there are.
 struct Sharing {
-    const char* name;
-    LoopSchedule schedule;
-    Grain grain;
+    LoopWay way;
     bool is_pool;
 };
-const std::vector<Sharing> kSharings{
-    {"lines, static", {LoopSchedule::Kind::Static, 0}, {Grain::Kind::Line}, false},
-    {"lines, static,1", {LoopSchedule::Kind::Static, 1}, {Grain::Kind::Line}, false},
-    {"pixels, static,1", {LoopSchedule::Kind::Static, 1}, {Grain::Kind::Pixel}, false},
-    {"pools, lines as asked for", {LoopSchedule::Kind::Dynamic, 1}, {Grain::Kind::Line}, true}};
+constexpr Sharing kSharings[] = {{{"lines, static", "line", "static"}, false},
+                                 {{"lines, static,1", "line", "static,1"}, false},
+                                 {{"pixels, static,1", "pixel", "static,1"}, false},
+                                 {{"pools, lines as asked for", "line", "dynamic"}, true}};
 
-class Adaptive : public Study {
-  public:
-    [[nodiscard]] std::string name() const override { return "adaptive"; }
-    [[nodiscard]] std::string question() const override {
-        return "When does it pay to give noisy pixels more samples, what bias does it cost, and what does it do to "
-               "static schedules?";
-    }
-    [[nodiscard]] std::vector<Column> columns() const override {
-        return {{"kind", ColumnType::Text, "reference (being made), run, or load"},
-                {"scene", ColumnType::Text, "what was rendered"},
-                {"target", ColumnType::Real, "RMSE asked for, linear radiance"},
-                {"method", ColumnType::Text, "adaptive, or uniform with as many paths"},
-                {"sharing", ColumnType::Text, "of a load: how pixels were shared out"},
-                {"width", ColumnType::Count, "image width, pixels"},
-                {"threads", ColumnType::Count, "OpenMP threads"},
-                {"seed", ColumnType::Count, "of all random numbers"},
-                {"rounds", ColumnType::Count, "of estimating and rendering"},
-                {"samples", ColumnType::Real, "for each pixel, on average"},
-                {"seconds", ColumnType::Real,
-                 "wall clock of the render: setup, loops, last passes; and of the estimates between them"},
-                {"segments", ColumnType::Count, "rays traced"},
-                {"rmse_estimate", ColumnType::Real, "what the render itself takes its error for"},
-                {"mse", ColumnType::Signed, "squared error against the reference, less the reference's noise"},
-                {"shift", ColumnType::Signed, "mean of the image over that of the reference, less 1"},
-                {"load", ColumnType::Real, "segments of the busiest threads of all passes over fair shares"},
-                {"hash", ColumnType::Text, "of the sums"}};
-    }
+/// Adaptive, and then uniform with as many paths, one after the other.
+Case pair_case(const SharedScene& scene, const SharedReference& reference, const AdaptivePlan& plan, double error,
+               std::uint64_t seed) {
+    const auto run = [=]() -> std::vector<Cells> {
+        const wavefront::WavefrontEngine pool({});
+        const double begin = omp_get_wtime();
+        const Made adaptive = make_adaptive(pool, scene->in_float, settings_of(seed, plan.threads), error);
+        const double adaptive_s = omp_get_wtime() - begin;
 
-    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
-        const Plan plan = plan_of(options);
-        const std::filesystem::path folder = options.folder.empty() ? "" : options.folder / "references";
-        std::vector<Case> cases;
-        std::vector<std::function<Case(std::uint64_t)>> by_seed;
-        for (const Target& target : kTargets) {
-            if (options.is_scene_given && options.scene != target.scene) continue;
-            Scene description = load_scene(target.scene);
-            set_width(description, plan.width);
-            const auto scene = std::make_shared<const accuracy::SceneInBoth>(description);
-            const auto reference = std::make_shared<accuracy::Reference>(scene, plan.half_spp, folder, core_count());
-            for (int part = 0; part < 2; ++part)
-                cases.push_back(
-                    {fmt::format("reference: {}, half {}", target.scene, part), "", 1, [=, this] {
-                         reference->extend(plan.half_spp);
-                         return std::vector<Row>{sparse_row(
-                             columns(), {{"kind", "reference"}, {"scene", target.scene}, {"width", plan.width}})};
-                     }});
-            for (const double error : target.errors)
-                by_seed.emplace_back(
-                    [=, this](std::uint64_t seed) { return pair(scene, reference, plan, error, seed); });
-            cases.push_back(loads(scene, plan, target.errors[0]));
-        }
-        if (cases.empty())
-            throw InputError("--scene: the study knows errors to ask for of half_sky, paper, cornell and glass_stack");
-        for (int turn = 0; turn < plan.seeds; ++turn)
-            for (const auto& make : by_seed) cases.push_back(make(plan.first_seed + static_cast<std::uint64_t>(turn)));
-        return cases;
-    }
-
-  private:
-    /// Adaptive, and then uniform with as many paths, one after the other.
-    [[nodiscard]] Case pair(const SharedScene& scene, const SharedReference& reference, const Plan& plan, double error,
-                            std::uint64_t seed) const {
-        const auto run = [=, this]() -> std::vector<Row> {
-            const wavefront::WavefrontEngine pool({});
-            const RenderSettings settings = settings_of(seed, plan.threads);
-            const double begin = omp_get_wtime();
-            const Made adaptive = make_adaptive(pool, scene->in_float, settings, error);
-            const double adaptive_s = omp_get_wtime() - begin;
-
-            accuracy::Configuration uniform;
-            const auto spp = std::max<std::int64_t>(1, std::llround(adaptive.adaptive.mean_samples()));
-            const accuracy::TimedImage same = render_image(uniform, *scene, {0, spp, seed, plan.threads});
-            const accuracy::Halves& halves = reference->halves();
-            const double truth = mean(mean_of(halves));
-            const auto row = [&](const char* method, double samples, double seconds, const accuracy::Values& values,
-                                 const RenderReport& report, const std::string& hash) {
-                return sparse_row(columns(), {{"kind", "run"},
-                                              {"scene", scene->description.name},
-                                              {"target", error},
-                                              {"method", method},
-                                              {"width", plan.width},
-                                              {"threads", plan.threads},
-                                              {"seed", seed},
-                                              {"samples", samples},
-                                              {"seconds", seconds},
-                                              {"segments", report.segments()},
-                                              {"mse", corrected_mse(values, halves)},
-                                              {"shift", mean(values) / truth - 1},
-                                              {"hash", hash}});
-            };
-            std::vector<Row> rows{
-                row("adaptive", adaptive.adaptive.mean_samples(), adaptive_s, adaptive.values, adaptive.report,
-                    adaptive.hash),
+        const auto spp = std::max<std::int64_t>(1, std::llround(adaptive.adaptive.mean_samples()));
+        const accuracy::TimedImage same = render_image({}, *scene, {0, spp, seed, plan.threads});
+        const accuracy::Halves& halves = reference->halves();
+        const double truth = mean(mean_of(halves));
+        const auto row = [&](const char* method, double samples, double seconds, const accuracy::Values& values,
+                             const RenderReport& report, const std::string& hash) {
+            return Cells{{"kind", "run"},
+                         {"scene", scene->description.name},
+                         {"target", error},
+                         {"method", method},
+                         {"width", plan.width},
+                         {"threads", plan.threads},
+                         {"seed", seed},
+                         {"samples", samples},
+                         {"seconds", seconds},
+                         {"segments", report.segments()},
+                         {"mse", corrected_mse(values, halves)},
+                         {"shift", mean(values) / truth - 1},
+                         {"hash", hash}};
+        };
+        const AdaptiveReport& report = adaptive.adaptive;
+        return {row("adaptive", report.mean_samples(), adaptive_s, adaptive.values, adaptive.report, adaptive.hash) +
+                    Cells{{"rounds", report.rounds}, {"rmse_estimate", report.rmse}},
                 row("uniform", static_cast<double>(spp), same.report.seconds, same.values, same.report, same.hash)};
-            set(rows[0], "rounds", adaptive.adaptive.rounds);
-            set(rows[0], "rmse_estimate", adaptive.adaptive.rmse);
-            return rows;
-        };
-        return {fmt::format("{} to {:g}, seed {}", scene->description.name, error, seed), "", 1, run};
+    };
+    return {fmt::format("{} to {:g}, seed {}", scene->description.name, error, seed), "", 1, run};
+}
+
+/// Who does how much in the passes of an adaptive render and in a uniform one.
+std::vector<Cells> load_rows(const accuracy::SceneInBoth& scene, const AdaptivePlan& plan, double error) {
+    std::vector<Cells> rows;
+    std::string expected;
+    const recursive::IterativeEngine loop;
+    const wavefront::WavefrontEngine pool({});
+    for (const Sharing& sharing : kSharings) {
+        const int threads = sharing.is_pool ? std::min(plan.load_threads, core_count()) : plan.load_threads;
+        const Engine& engine = sharing.is_pool ? static_cast<const Engine&>(pool) : loop;
+        RenderSettings settings = with_way(settings_of(plan.first_seed, threads), sharing.way);
+
+        const PassLog adaptive(engine);
+        const Made made = make_adaptive(adaptive, scene.in_float, settings, error);
+        if (!expected.empty() && made.hash != expected)
+            throw WrongImage(std::string(sharing.way.name) + ": another image than the first sharing made");
+        expected = made.hash;
+
+        const PassLog uniform(engine);
+        settings.end_sample = std::max<std::int64_t>(1, std::llround(made.adaptive.mean_samples()));
+        Framebuffer framebuffer(scene.in_float.width, scene.in_float.height,
+                                FixedPoint::make(settings.end_sample, scene.in_float.max_radiance));
+        static_cast<void>(uniform.render(scene.in_float, settings, framebuffer));
+        for (const auto& [method, log] : {std::pair{"adaptive", &adaptive}, {"uniform", &uniform}})
+            rows.push_back({{"kind", "load"},
+                            {"scene", scene.description.name},
+                            {"target", error},
+                            {"method", method},
+                            {"sharing", sharing.way.name},
+                            {"width", plan.width},
+                            {"threads", threads},
+                            {"seed", plan.first_seed},
+                            {"load", log->load()}});
     }
+    return rows;
+}
 
-    /// Who does how much in the passes of an adaptive render and in a uniform one.
-    [[nodiscard]] Case loads(const SharedScene& scene, const Plan& plan, double error) const {
-        const auto run = [=, this]() -> std::vector<Row> {
-            std::vector<Row> rows;
-            std::string expected;
-            for (const Sharing& sharing : kSharings) {
-                const recursive::IterativeEngine loop;
-                const wavefront::WavefrontEngine pool({});
-                const int threads = sharing.is_pool ? std::min(plan.load_threads, core_count()) : plan.load_threads;
-                const Engine& engine = sharing.is_pool ? static_cast<const Engine&>(pool) : loop;
-                RenderSettings settings = settings_of(plan.first_seed, threads);
-                settings.schedule = sharing.schedule;
-                settings.grain = sharing.grain;
-
-                const PassLog adaptive(engine);
-                const Made made = make_adaptive(adaptive, scene->in_float, settings, error);
-                if (!expected.empty() && made.hash != expected)
-                    throw WrongImage(std::string(sharing.name) + ": another image than the first sharing made");
-                expected = made.hash;
-
-                const PassLog uniform(engine);
-                settings.end_sample = std::max<std::int64_t>(1, std::llround(made.adaptive.mean_samples()));
-                Framebuffer framebuffer(scene->in_float.width, scene->in_float.height,
-                                        FixedPoint::make(settings.end_sample, scene->in_float.max_radiance));
-                static_cast<void>(uniform.render(scene->in_float, settings, framebuffer));
-                for (const auto& [method, log] : {std::pair{"adaptive", &adaptive}, {"uniform", &uniform}})
-                    rows.push_back(sparse_row(columns(), {{"kind", "load"},
-                                                          {"scene", scene->description.name},
-                                                          {"target", error},
-                                                          {"method", method},
-                                                          {"sharing", sharing.name},
-                                                          {"width", plan.width},
-                                                          {"threads", threads},
-                                                          {"seed", plan.first_seed},
-                                                          {"load", log->load()}}));
-            }
-            return rows;
-        };
-        return {"load: " + scene->description.name, "", 1, run};
+std::vector<Case> adaptive_cases(const StudyOptions& options) {
+    const AdaptivePlan plan = adaptive_plan(options);
+    const std::filesystem::path folder = options.folder.empty() ? "" : options.folder / "references";
+    std::vector<Case> cases;
+    std::vector<std::function<Case(std::uint64_t)>> by_seed;
+    for (const Target& target : kTargets) {
+        if (options.is_scene_given && options.scene != target.scene) continue;
+        Scene description = load_scene(target.scene);
+        set_width(description, plan.width);
+        const auto scene = std::make_shared<const accuracy::SceneInBoth>(description);
+        const auto reference = std::make_shared<accuracy::Reference>(scene, plan.half_spp, folder, core_count());
+        for (int part = 0; part < 2; ++part)
+            cases.push_back({fmt::format("reference: {}, half {}", target.scene, part), "", 1, [=] {
+                                 reference->extend(plan.half_spp);
+                                 const Cells row{{"kind", "reference"}, {"scene", target.scene}, {"width", plan.width}};
+                                 return std::vector<Cells>{row};
+                             }});
+        for (const double error : target.errors)
+            by_seed.emplace_back([=](std::uint64_t seed) { return pair_case(scene, reference, plan, error, seed); });
+        cases.push_back({"load: " + scene->description.name, "", 1,
+                         [=, error = target.errors[0]] { return load_rows(*scene, plan, error); }});
     }
-
-    void set(Row& row, const char* column, const Value& value) const {
-        const std::vector<Column> all = columns();
-        const auto at = std::find_if(all.begin(), all.end(), [&](const Column& c) { return c.name == column; });
-        row[static_cast<std::size_t>(at - all.begin())] = value;
-    }
-};
+    if (cases.empty())
+        throw InputError("--scene: the study knows errors to ask for of half_sky, paper, cornell and glass_stack");
+    for (int turn = 0; turn < plan.seeds; ++turn)
+        for (const auto& make : by_seed) cases.push_back(make(plan.first_seed + static_cast<std::uint64_t>(turn)));
+    return cases;
+}
 
 }  // namespace
 
-std::unique_ptr<Study> adaptive_study() {
-    return std::make_unique<Adaptive>();
+Study adaptive_study() {
+    return {.name = "adaptive",
+            .question =
+                "When does it pay to give noisy pixels more samples, what bias does it cost, and what does it do "
+                "to static schedules?",
+            .columns = {{"kind", ColumnType::Text, "reference (being made), run, or load"},
+                        {"scene", ColumnType::Text, "what was rendered"},
+                        {"target", ColumnType::Real, "RMSE asked for, linear radiance"},
+                        {"method", ColumnType::Text, "adaptive, or uniform with as many paths"},
+                        {"sharing", ColumnType::Text, "of a load: how pixels were shared out"},
+                        {"width", ColumnType::Count, "image width, pixels"},
+                        {"threads", ColumnType::Count, "OpenMP threads"},
+                        {"seed", ColumnType::Count, "of all random numbers"},
+                        {"rounds", ColumnType::Count, "of estimating and rendering"},
+                        {"samples", ColumnType::Real, "for each pixel, on average"},
+                        {"seconds", ColumnType::Real,
+                         "wall clock of the render: setup, loops, last passes; and of the estimates between them"},
+                        {"segments", ColumnType::Count, "rays traced"},
+                        {"rmse_estimate", ColumnType::Real, "what the render itself takes its error for"},
+                        {"mse", ColumnType::Signed, "squared error against the reference, less the reference's noise"},
+                        {"shift", ColumnType::Signed, "mean of the image over that of the reference, less 1"},
+                        {"load", ColumnType::Real, "segments of the busiest threads of all passes over fair shares"},
+                        {"hash", ColumnType::Text, "of the sums"}},
+            .cases = adaptive_cases};
 }
 
 }  // namespace raypool::studies

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/studies/process.h"
+#include "bench/studies/scratch_folder.h"
 #include "core/runtime/environment.h"
 
 namespace raypool::studies {
@@ -20,26 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-/// A folder that goes when this does.
-class ScratchFolder {
-  public:
-    ScratchFolder() {
-        std::string name = (fs::temp_directory_path() / "raypool-XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot make the folder");
-        path_ = name;
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    ~ScratchFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    [[nodiscard]] std::string file(const char* name) const { return (path_ / name).string(); }
-
-  private:
-    fs::path path_;
-};
 
 json read_json(const std::string& path) {
     std::ifstream file(path);
@@ -56,7 +37,7 @@ bool has_valgrind() {
 /// The commit that a raypool command was built of; empty where it cannot be told.
 std::string commit_of(const fs::path& command) {
     const ScratchFolder scratch;
-    const std::string stats = scratch.file("stats.json");
+    const std::string stats = scratch.file("stats.json").string();
     const int status = run_process(
         {command.string(), "render", "--width", "1", "--spp", "1", "--threads", "1", "--quiet", "--stats", stats});
     const json found = status == 0 ? read_json(stats) : json();
@@ -112,15 +93,15 @@ CacheCounts read_cachegrind(std::istream& file, const std::function<bool(const s
 
 Cachegrind run_cachegrind(const std::vector<std::string>& arguments) {
     const ScratchFolder scratch;
-    const std::string counts = scratch.file("counts");
-    const std::string stats = scratch.file("stats.json");
+    const std::string counts = scratch.file("counts").string();
+    const std::string stats = scratch.file("stats.json").string();
     std::vector<std::string> all{"valgrind",
                                  "--tool=cachegrind",
                                  "--cache-sim=yes",
                                  std::string("--D1=") + kSimulatedD1,
                                  std::string("--LL=") + kSimulatedLl,
                                  "--cachegrind-out-file=" + counts,
-                                 "--log-file=" + scratch.file("log"),
+                                 "--log-file=" + scratch.file("log").string(),
                                  cachegrind_command().path.string(),
                                  "render"};
     all.insert(all.end(), arguments.begin(), arguments.end());

@@ -6,8 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/studies.h"
+#include "bench/studies/statistics.h"
 #include "bench/studies/truncation.h"
 #include "core/base/error.h"
 #include "core/scene/scene_reader.h"
@@ -75,17 +76,19 @@ HalvesRender render_halves(const StudyScene& scene, RenderSettings settings, std
     return out;
 }
 
-/// Behind kind, scene, engine, threads, width and depth.
-Row start_of_row(const char* kind, const StudyScene& scene, const std::string& engine, const RenderSettings& settings) {
-    return {kind, scene.name, engine, settings.threads, scene.compiled.width, settings.depth};
-}
-void extend(Row& row, const Row& more) {
-    row.insert(row.end(), more.begin(), more.end());
+Cells start_of_row(const char* kind, const StudyScene& scene, const std::string& engine,
+                   const RenderSettings& settings) {
+    return {{"kind", kind},
+            {"scene", scene.name},
+            {"engine", engine},
+            {"threads", settings.threads},
+            {"width", scene.compiled.width},
+            {"depth", settings.depth}};
 }
 
 /// One row for each limit: what is left of the paths, and what is missing of the light of the last. No times.
-std::vector<Row> survival_rows(const StudyScene& scene, RenderSettings settings,
-                               const std::vector<std::int64_t>& depths) {
+std::vector<Cells> survival_rows(const StudyScene& scene, RenderSettings settings,
+                                 const std::vector<std::int64_t>& depths) {
     std::map<std::int64_t, HalvesRender> renders;
     const auto at = [&](std::int64_t depth) -> const HalvesRender& {
         const auto found = renders.find(depth);
@@ -94,16 +97,20 @@ std::vector<Row> survival_rows(const StudyScene& scene, RenderSettings settings,
     };
     const std::int64_t half = settings.end_sample / 2;
     const HalvesRender& reference = at(depths.back());
-    std::vector<Row> rows;
+    std::vector<Cells> rows;
     for (const std::int64_t depth : depths) {
         const HalvesRender& cut = at(depth);
         const Loss loss = truncation_loss(reference.halves, cut.halves, cut.scale, half);
         settings.depth = static_cast<std::int32_t>(depth);
-        Row row = start_of_row(kSurvival, scene, "pool", settings);
-        extend(row, {cut.paths, cut.segments, nullptr, nullptr, nullptr,
-                     alive_share(cut.segments, at(depth + 1).segments, cut.paths), loss.relative, loss.paired_rmse,
-                     loss.rmse, noise_rmse(reference.halves, cut.scale, half, kNoiseSpp), kRendered, nullptr, nullptr});
-        rows.push_back(std::move(row));
+        rows.push_back(start_of_row(kSurvival, scene, "pool", settings) +
+                       Cells{{"paths", cut.paths},
+                             {"segments", cut.segments},
+                             {"alive", alive_share(cut.segments, at(depth + 1).segments, cut.paths)},
+                             {"lost_light", loss.relative},
+                             {"paired_rmse", loss.paired_rmse},
+                             {"lost_rmse", loss.rmse},
+                             {"noise_rmse", noise_rmse(reference.halves, cut.scale, half, kNoiseSpp)},
+                             {"outcome", kRendered}});
     }
     return rows;
 }
@@ -111,22 +118,17 @@ std::vector<Row> survival_rows(const StudyScene& scene, RenderSettings settings,
 Case timed_case(const char* kind, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
                 RenderSettings settings, std::int64_t depth, int repeats) {
     settings.depth = static_cast<std::int32_t>(depth);
-    const auto run = [kind, engine, scene, settings]() -> std::vector<Row> {
-        Row row = start_of_row(kind, *scene, engine.name, settings);
-        const Row no_losses(5, nullptr);
+    const auto run = [kind, engine, scene, settings]() -> std::vector<Cells> {
+        Cells row = start_of_row(kind, *scene, engine.name, settings);
         try {
             const Measured measured = measure(*engine.engine, *scene, settings);
             const RenderReport& report = measured.report;
-            const auto segments = static_cast<double>(report.segments());
-            extend(row, {report.paths(), report.segments(), report.seconds,
-                         1e9 * report.seconds * settings.threads / segments,
-                         report.pool_bytes == 0 ? Value(nullptr) : Value(report.pool_bytes)});
-            extend(row, no_losses);
-            extend(row, {kRendered, nullptr, measured.hash});
+            row = row + Cells{{"paths", report.paths()},   {"segments", report.segments()},
+                              {"seconds", report.seconds}, {"ns_per_segment", ns_per_segment(report, settings.threads)},
+                              {"outcome", kRendered},      {"hash", measured.hash}};
+            if (report.pool_bytes != 0) row.emplace_back("pool_bytes", report.pool_bytes);
         } catch (const InputError& refusal) {
-            extend(row, Row(5, nullptr));
-            extend(row, no_losses);
-            extend(row, {kRefused, refusal.what(), nullptr});
+            row = row + Cells{{"outcome", kRefused}, {"refusal", refusal.what()}};
         }
         return {row};
     };
@@ -134,77 +136,68 @@ Case timed_case(const char* kind, const NamedEngine& engine, const std::shared_p
             repeats, run};
 }
 
-class Depth : public Study {
-  public:
-    [[nodiscard]] std::string name() const override { return "depth"; }
-    [[nodiscard]] std::string question() const override {
-        return "What does the limit of depth cut off, what does it cost, and how deep can each engine go?";
-    }
-    [[nodiscard]] std::vector<Column> columns() const override {
-        return {{"kind", ColumnType::Text, "survival (no times), time, or very deep"},
-                {"scene", ColumnType::Text, "what was rendered"},
-                {"engine", ColumnType::Text, "who rendered"},
-                {"threads", ColumnType::Count, "OpenMP threads"},
-                {"width", ColumnType::Count, "image width, pixels"},
-                {"depth", ColumnType::Count, "most segments of a path"},
-                {"paths", ColumnType::Count, "samples of all pixels"},
-                {"segments", ColumnType::Count, "rays traced"},
-                {"seconds", ColumnType::Real, "wall clock of the render: setup, loops, last pass"},
-                {"ns_per_segment", ColumnType::Real, "nanoseconds of a thread for a segment"},
-                {"pool_bytes", ColumnType::Count, "of all pools, with their scratch memory"},
-                {"alive", ColumnType::Real, "part of the paths that would go on after so many segments"},
-                {"lost_light", ColumnType::Signed, "part of the light at the deepest limit that is cut off"},
-                {"paired_rmse", ColumnType::Real, "linear radiance, this image against the deepest"},
-                {"lost_rmse", ColumnType::Real, "the same of the expected images, free of noise"},
-                {"noise_rmse", ColumnType::Real, "linear radiance, of the deepest image with 100 samples a pixel"},
-                {"outcome", ColumnType::Text, "rendered, or refused for want of stack"},
-                {"refusal", ColumnType::Text, "what the engine said"},
-                {"hash", ColumnType::Text, "of the sums of the image"}};
+std::vector<Case> depth_cases(const StudyOptions& options) {
+    const Plan plan = plan_of(options, {16, 24}, {5, 7}, 1);
+    RenderSettings settings = plan.settings;
+    std::vector<Case> cases;
+
+    // What is cut off: counted, not timed, so by all cores.
+    std::vector<std::int64_t> limits = depths_up_to(options.depth, kDepths);
+    if (limits.back() < kReference) limits.push_back(kReference);
+    std::vector<std::string> scenes{options.scene, "cornell", "glass_stack", kFurnace};
+    scenes.erase(std::remove(scenes.begin() + 1, scenes.end(), options.scene), scenes.end());
+    settings.threads = options.threads != 0 ? options.threads : core_count();
+    settings.end_sample = 2 * ((choose(options, options.spp, {16, 128}) + 1) / 2);
+    for (const std::string& name : scenes) {
+        const auto scene = study_scene(name, choose(options, options.width, {120, 160}));
+        cases.push_back({"survival: " + scene->name, "", 1,
+                         [scene, settings, limits] { return survival_rows(*scene, settings, limits); }});
     }
 
-    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
-        const bool is_quick = options.is_quick;
-        RenderSettings settings;
-        settings.seed = options.seed;
-        std::vector<Case> cases;
+    // What it costs.
+    const std::vector<NamedEngine> engines{recursive_engine(), iterative_engine(), canonical_pool(), fused_pool()};
+    const auto scene = study_scene(options.scene, choose(options, options.width, {160, 320}));
+    settings.threads = plan.most_threads;
+    settings.end_sample = plan.settings.end_sample;
+    for (const std::int64_t depth : depths_up_to(options.depth, kDepths))
+        for (const NamedEngine& engine : engines)
+            cases.push_back(timed_case(kTime, engine, scene, settings, depth, plan.repeats));
 
-        // What is cut off: counted, not timed, so by all cores.
-        std::vector<std::int64_t> limits = depths_up_to(options.depth, kDepths);
-        if (limits.back() < kReference) limits.push_back(kReference);
-        std::vector<std::string> scenes{options.scene, "cornell", "glass_stack", kFurnace};
-        scenes.erase(std::remove(scenes.begin() + 1, scenes.end(), options.scene), scenes.end());
-        settings.threads = static_cast<int>(choose(options.threads, false, 0, core_count()));
-        settings.end_sample = 2 * ((choose(options.spp, is_quick, 16, 128) + 1) / 2);
-        for (const std::string& name : scenes) {
-            const auto scene = study_scene(name, choose(options.width, is_quick, 120, 160));
-            cases.push_back({"survival: " + scene->name, "", 1,
-                             [scene, settings, limits] { return survival_rows(*scene, settings, limits); }});
-        }
-
-        // What it costs.
-        const std::vector<NamedEngine> engines{recursive_engine(), iterative_engine(), canonical_pool(), fused_pool()};
-        const int repeats = static_cast<int>(choose(options.repeats, is_quick, 5, 7));
-        const auto scene = study_scene(options.scene, choose(options.width, is_quick, 160, 320));
-        settings.threads = static_cast<int>(choose(options.threads, false, 0, 1));
-        settings.end_sample = choose(options.spp, is_quick, 16, 24);
-        for (const std::int64_t depth : depths_up_to(options.depth, kDepths))
-            for (const NamedEngine& engine : engines)
-                cases.push_back(timed_case(kTime, engine, scene, settings, depth, repeats));
-
-        // How deep they can go.
-        const auto corridor = endless_corridor();
-        settings.end_sample = 1;
-        for (const std::int64_t depth : depths_up_to(choose(options.depth, is_quick, 100'000, 0), kVeryDeep))
-            for (const NamedEngine& engine : engines)
-                cases.push_back(timed_case(kDeep, engine, corridor, settings, depth, std::min(repeats, 3)));
-        return cases;
-    }
-};
+    // How deep they can go.
+    const auto corridor = endless_corridor();
+    settings.end_sample = 1;
+    for (const std::int64_t depth : depths_up_to(choose(options, options.depth, {100'000, 0}), kVeryDeep))
+        for (const NamedEngine& engine : engines)
+            cases.push_back(timed_case(kDeep, engine, corridor, settings, depth, std::min(plan.repeats, 3)));
+    return cases;
+}
 
 }  // namespace
 
-std::unique_ptr<Study> depth_study() {
-    return std::make_unique<Depth>();
+Study depth_study() {
+    return {
+        .name = "depth",
+        .question = "What does the limit of depth cut off, what does it cost, and how deep can each engine go?",
+        .columns = {{"kind", ColumnType::Text, "survival (no times), time, or very deep"},
+                    {"scene", ColumnType::Text, "what was rendered"},
+                    {"engine", ColumnType::Text, "who rendered"},
+                    {"threads", ColumnType::Count, "OpenMP threads"},
+                    {"width", ColumnType::Count, "image width, pixels"},
+                    {"depth", ColumnType::Count, "most segments of a path"},
+                    {"paths", ColumnType::Count, "samples of all pixels"},
+                    {"segments", ColumnType::Count, "rays traced"},
+                    {"seconds", ColumnType::Real, "wall clock of the render: setup, loops, last pass"},
+                    {"ns_per_segment", ColumnType::Real, "nanoseconds of a thread for a segment"},
+                    {"pool_bytes", ColumnType::Count, "of all pools, with their scratch memory"},
+                    {"alive", ColumnType::Real, "part of the paths that would go on after so many segments"},
+                    {"lost_light", ColumnType::Signed, "part of the light at the deepest limit that is cut off"},
+                    {"paired_rmse", ColumnType::Real, "linear radiance, this image against the deepest"},
+                    {"lost_rmse", ColumnType::Real, "the same of the expected images, free of noise"},
+                    {"noise_rmse", ColumnType::Real, "linear radiance, of the deepest image with 100 samples a pixel"},
+                    {"outcome", ColumnType::Text, "rendered, or refused for want of stack"},
+                    {"refusal", ColumnType::Text, "what the engine said"},
+                    {"hash", ColumnType::Text, "of the sums of the image"}},
+        .cases = depth_cases};
 }
 
 }  // namespace raypool::studies

@@ -4,6 +4,7 @@
 /// They make the image of any scene that lacks what they lack.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -43,11 +44,16 @@ using BeginFunction = std::unique_ptr<RenderSession> (*)(const CompiledScene<flo
 BeginFunction iterative_begin(std::size_t set);
 BeginFunction pool_begin(std::size_t set);
 
-/// The pool's are in three files, which compile slowly: those from set 0, kFileSets and 2 * kFileSets on.
-inline constexpr std::size_t kFileSets = 4;
-BeginFunction pool_begin_front(std::size_t set);
-BeginFunction pool_begin_middle(std::size_t set);
-BeginFunction pool_begin_back(std::size_t set);
+/// The pool's compile slowly, so they are compiled in three parts of so many sets (features_pool.cpp).
+inline constexpr std::size_t kPartSets = 4;
+template <std::size_t part>
+BeginFunction pool_begin_of_part(std::size_t set);
+template <>
+BeginFunction pool_begin_of_part<0>(std::size_t set);
+template <>
+BeginFunction pool_begin_of_part<1>(std::size_t set);
+template <>
+BeginFunction pool_begin_of_part<2>(std::size_t set);
 
 /// The function of each set from `first` on, `count` of them, by Pick<needs>::begin.
 template <template <Features> class Pick, std::size_t first, std::size_t count>

@@ -6,7 +6,7 @@
 
 #include "bench/studies/feature_engines.h"
 #include "bench/studies/plain_scene.h"
-#include "bench/studies/studies.h"
+#include "bench/studies/registry.h"
 #include "core/base/error.h"
 #include "core/runtime/settings_text.h"
 #include "core/scene/scene_reader.h"
@@ -20,7 +20,7 @@ constexpr const char* kItsOwn = "its own";
 constexpr const char* kAll = "everything";
 constexpr const char* kPlain = "plain";
 
-/// One of the functions of needs_engines.h as an engine.
+/// One of the functions of feature_engines.h as an engine.
 class FeatureEngine : public Engine {
   public:
     explicit FeatureEngine(BeginFunction function) : function_(function) {}
@@ -43,8 +43,9 @@ class FeatureEngine : public Engine {
 }  // namespace
 
 BeginFunction pool_begin(std::size_t set) {
-    if (set < kFileSets) return pool_begin_front(set);
-    return set < 2 * kFileSets ? pool_begin_middle(set) : pool_begin_back(set);
+    constexpr BeginFunction (*kParts[])(std::size_t) = {pool_begin_of_part<0>, pool_begin_of_part<1>,
+                                                        pool_begin_of_part<2>};
+    return kParts[set / kPartSets](set);
 }
 
 namespace {
@@ -61,64 +62,50 @@ Twins twins(const Scene& scene) {
             std::make_shared<const StudyScene>(std::move(everything))};
 }
 
-class Needs : public Study {
-  public:
-    [[nodiscard]] std::string name() const override { return "features"; }
-    [[nodiscard]] std::string question() const override {
-        return "What does a feature cost, in time and in bytes per ray, where a scene does not use it?";
-    }
-    [[nodiscard]] std::vector<Column> columns() const override {
-        std::vector<Column> columns = render_columns();
-        columns.push_back({"scene", ColumnType::Text, "plain: uses no feature; or the scene as it is"});
-        columns.push_back({"compiled", ColumnType::Text, "the features that the kernels were compiled for"});
-        columns.push_back({"record_bytes", ColumnType::Count, "of a ray record in the pool, single precision"});
-        columns.push_back({"record_bytes_double", ColumnType::Count, "the same in double precision (not run)"});
-        return columns;
-    }
+std::vector<Case> features_cases(const StudyOptions& options) {
+    Scene scene = load_scene(options.scene);
+    set_width(scene, choose(options, options.width, {160, 400}));
+    const Twins plain = twins(plain_scene(scene));
+    const Twins own = twins(scene);
+    Plan plan = plan_of(options, {40, 24}, {7, 11}, 1);
+    plan.settings.threads = plan.most_threads;
 
-    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
-        Scene scene = load_scene(options.scene);
-        set_width(scene, choose(options.width, options.is_quick, 160, 400));
-        const Twins plain = twins(plain_scene(scene));
-        const Twins own = twins(scene);
-        RenderSettings settings;
-        settings.end_sample = choose(options.spp, options.is_quick, 40, 24);
-        settings.depth = static_cast<std::int32_t>(choose(options.depth, options.is_quick, 50, 50));
-        settings.seed = options.seed;
-        settings.threads = static_cast<int>(choose(options.threads, false, 0, 1));
-        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 7, 11));
-
-        std::vector<Case> cases;
-        const auto add = [&](const NamedEngine& engine, const char* scene_name, const char* compiled,
-                             const std::shared_ptr<const StudyScene>& study_scene, const Features& features) {
-            const bool has_records = engine.name != iterative_engine().name;
-            const auto bytes = [&](std::size_t scalar) {
-                return has_records ? Value(ray_record_bytes(features, scalar)) : Value(nullptr);
-            };
-            cases.push_back(render_case(fmt::format("{}, {}, compiled for {}", engine.name, scene_name, compiled),
-                                        engine, study_scene, settings, repeats,
-                                        {scene_name, compiled, bytes(sizeof(float)), bytes(sizeof(double))}));
-        };
-        for (const auto& [engine, render] :
-             {std::pair{iterative_engine(), &iterative_begin}, std::pair{fused_pool(), &pool_begin}}) {
-            add(engine, kPlain, kNothing, plain.own, {});
-            for (std::size_t i = 0; i < kFeatureSets.size(); ++i)
-                add({engine.name, std::make_shared<FeatureEngine>(render(i))}, kPlain, kFeatureSets[i].name, plain.own,
-                    kFeatureSets[i].features);
-            add(engine, kPlain, kAll, plain.everything, kEverything);
-            const std::string scene_name = own.own->name;
-            add(engine, scene_name.c_str(), kItsOwn, own.own,
-                kCompiledFeatures[compiled_features_index(own.own->compiled.features)]);
-            add(engine, scene_name.c_str(), kAll, own.everything, kEverything);
+    std::vector<Case> cases;
+    const auto add = [&](const NamedEngine& engine, const std::string& scene_name, const char* compiled,
+                         const std::shared_ptr<const StudyScene>& study_scene, const Features& features) {
+        Cells extra{{"scene", scene_name}, {"compiled", compiled}};
+        if (engine.name != iterative_engine().name) {
+            extra.emplace_back("record_bytes", ray_record_bytes(features, sizeof(float)));
+            extra.emplace_back("record_bytes_double", ray_record_bytes(features, sizeof(double)));
         }
-        return cases;
+        cases.push_back(render_case(fmt::format("{}, {}, compiled for {}", engine.name, scene_name, compiled), engine,
+                                    study_scene, plan.settings, plan.repeats, extra));
+    };
+    for (const auto& [engine, render] :
+         {std::pair{iterative_engine(), &iterative_begin}, std::pair{fused_pool(), &pool_begin}}) {
+        add(engine, kPlain, kNothing, plain.own, {});
+        for (std::size_t i = 0; i < kFeatureSets.size(); ++i)
+            add({engine.name, std::make_shared<FeatureEngine>(render(i))}, kPlain, kFeatureSets[i].name, plain.own,
+                kFeatureSets[i].features);
+        add(engine, kPlain, kAll, plain.everything, kEverything);
+        add(engine, own.own->name, kItsOwn, own.own,
+            kCompiledFeatures[compiled_features_index(own.own->compiled.features)]);
+        add(engine, own.own->name, kAll, own.everything, kEverything);
     }
-};
+    return cases;
+}
 
 }  // namespace
 
-std::unique_ptr<Study> features_study() {
-    return std::make_unique<Needs>();
+Study features_study() {
+    return {.name = "features",
+            .question = "What does a feature cost, in time and in bytes per ray, where a scene does not use it?",
+            .columns =
+                render_columns({{"scene", ColumnType::Text, "plain: uses no feature; or the scene as it is"},
+                                {"compiled", ColumnType::Text, "the features that the kernels were compiled for"},
+                                {"record_bytes", ColumnType::Count, "of a ray record in the pool, single precision"},
+                                {"record_bytes_double", ColumnType::Count, "the same in double precision (not run)"}}),
+            .cases = features_cases};
 }
 
 }  // namespace raypool::studies

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "bench/studies/cache_counts.h"
+#include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/studies.h"
 #include "core/runtime/settings_text.h"
 #include "wavefront/engine.h"
 #include "wavefront/setting_names.h"
@@ -41,24 +41,12 @@ PoolSettings in_layout(const Pair& pair, const char* layout) {
     return pool;
 }
 
-Value or_null(const std::optional<std::int64_t>& count) {
-    return count ? Value(*count) : Value(nullptr);
-}
-
-/// The columns behind those of every render.
-Row cells(const StudyScene& scene, const RenderSettings& settings, const char* layout, const char* source,
-          const Value& part, const CacheCounts& counts) {
-    return {layout,
-            3 * sizeof(std::int64_t) * static_cast<std::size_t>(scene.compiled.pixel_count()),
-            scene.compiled.pixel_count() * settings.end_sample,
-            source,
-            part,
-            or_null(counts.reads),
-            or_null(counts.writes),
-            or_null(counts.d1_read_misses),
-            or_null(counts.d1_write_misses),
-            or_null(counts.ll_read_misses),
-            or_null(counts.ll_write_misses)};
+/// Behind the cells of every render.
+Cells layout_cells(const StudyScene& scene, const RenderSettings& settings, const char* layout, const char* source) {
+    return {{"layout", layout},
+            {"framebuffer_bytes", 3 * sizeof(std::int64_t) * static_cast<std::size_t>(scene.compiled.pixel_count())},
+            {"paths", scene.compiled.pixel_count() * settings.end_sample},
+            {"source", source}};
 }
 
 /// Arguments of `raypool render`.
@@ -91,40 +79,37 @@ std::vector<std::string> render_arguments(const std::string& scene, std::int64_t
 
 Case time_case(const Pair& pair, const char* layout, const std::shared_ptr<const StudyScene>& scene,
                const RenderSettings& settings, int repeats) {
-    const auto engine = std::make_shared<wavefront::WavefrontEngine>(in_layout(pair, layout));
     return render_case(fmt::format("time: {}, {}, width {}, {} spp, {} threads", pair.name, layout,
                                    scene->compiled.width, settings.end_sample, settings.threads),
-                       {pair.name, engine}, scene, settings, repeats,
-                       cells(*scene, settings, layout, "clock", nullptr, {}));
+                       pool_engine(pair.name, in_layout(pair, layout)), scene, settings, repeats,
+                       layout_cells(*scene, settings, layout, "clock"));
 }
 
 /// Rows of counts have no time: counting disturbs it.
-Row count_row(const Pair& pair, const StudyScene& scene, const RenderSettings& settings, const std::string& hash,
-              const Row& behind) {
-    const bool has_loop = loops_over_image(pair.pool);
-    Row row{pair.name,
-            settings.threads,
-            has_loop ? Value(to_string(settings.schedule)) : Value(),
-            has_loop ? Value(to_string(settings.grain)) : Value(),
-            scene.compiled.width,
-            nullptr,
-            nullptr,
-            nullptr,
-            nullptr,
-            hash};
-    row.insert(row.end(), behind.begin(), behind.end());
-    return row;
+Cells count_cells(const Pair& pair, const StudyScene& scene, const RenderSettings& settings, const std::string& hash,
+                  const char* part, const CacheCounts& counts) {
+    return Cells{{"engine", pair.name},
+                 {"threads", settings.threads},
+                 {"width", scene.compiled.width},
+                 {"hash", hash},
+                 {"part", part},
+                 {"data_reads", or_null(counts.reads)},
+                 {"data_writes", or_null(counts.writes)},
+                 {"d1_read_misses", or_null(counts.d1_read_misses)},
+                 {"d1_write_misses", or_null(counts.d1_write_misses)},
+                 {"ll_read_misses", or_null(counts.ll_read_misses)},
+                 {"ll_write_misses", or_null(counts.ll_write_misses)}} +
+           loop_cells(loops_over_image(pair.pool), settings);
 }
 
 Case hardware_case(const Pair& pair, const char* layout, const std::shared_ptr<const StudyScene>& scene,
                    const RenderSettings& settings, int repeats) {
-    const auto run = [pair, layout, scene, settings]() -> std::vector<Row> {
+    const auto run = [pair, layout, scene, settings]() -> std::vector<Cells> {
         std::string hash;
         const auto counts = count_by_hardware(
             [&] { hash = measure(wavefront::WavefrontEngine(in_layout(pair, layout)), *scene, settings).hash; });
-        return {
-            count_row(pair, *scene, settings, hash,
-                      cells(*scene, settings, layout, "hardware counters", "render", counts.value_or(CacheCounts{})))};
+        return {layout_cells(*scene, settings, layout, "hardware counters") +
+                count_cells(pair, *scene, settings, hash, "render", counts.value_or(CacheCounts{}))};
     };
     return {fmt::format("counters: {}, {}, width {}, {} spp", pair.name, layout, scene->compiled.width,
                         settings.end_sample),
@@ -133,12 +118,12 @@ Case hardware_case(const Pair& pair, const char* layout, const std::shared_ptr<c
 
 Case cachegrind_case(const Pair& pair, const char* layout, const std::string& file,
                      const std::shared_ptr<const StudyScene>& scene, const RenderSettings& settings) {
-    const auto run = [pair, layout, file, scene, settings]() -> std::vector<Row> {
+    const auto run = [pair, layout, file, scene, settings]() -> std::vector<Cells> {
         const Cachegrind found =
             run_cachegrind(render_arguments(file, scene->compiled.width, settings, in_layout(pair, layout)));
         const auto row = [&](const char* part, const CacheCounts& counts) {
-            return count_row(pair, *scene, settings, found.hash,
-                             cells(*scene, settings, layout, "cachegrind", part, counts));
+            return layout_cells(*scene, settings, layout, "cachegrind") +
+                   count_cells(pair, *scene, settings, found.hash, part, counts);
         };
         return {row("render", found.rendering), row("accumulate", found.accumulating)};
     };
@@ -146,16 +131,67 @@ Case cachegrind_case(const Pair& pair, const char* layout, const std::string& fi
             image_of(*scene, settings), 1, run};
 }
 
-class FramebufferLayout : public Study {
-  public:
-    [[nodiscard]] std::string name() const override { return "framebuffer"; }
-    [[nodiscard]] std::string question() const override {
-        return "Do a pixel's sums side by side save time or cache misses over three planes?";
+bool has_hardware_counters() {
+    return count_by_hardware([] {}).has_value();
+}
+
+std::vector<Case> framebuffer_cases(const StudyOptions& options) {
+    constexpr std::int64_t kSmaller = 5;           // times as wide is the large image
+    constexpr std::int64_t kSimulatedWidth = 320;  // whose sums are just too large for kSimulatedLl
+    const std::int64_t width = choose(options, options.width, {800, 800});
+    const Plan plan = plan_of(options, {1, 4}, {5, 9}, core_count());
+    const std::int64_t spp = plan.settings.end_sample;
+    RenderSettings settings = plan.settings;
+    settings.schedule = parse_schedule("dynamic");
+    std::vector<Case> cases;
+    const auto each_layout = [&](const auto& scene, std::int64_t samples, const auto& make) {
+        settings.end_sample = samples;
+        for (const Pair& pair : pairs())
+            for (const char* layout : {kInterleaved, kPlanar}) cases.push_back(make(pair, layout, scene));
+    };
+    // One image smaller than the second-level cache and one larger, with as many paths.
+    const auto large = study_scene(options.scene, width);
+    const auto small = study_scene(options.scene, std::max<std::int64_t>(width / kSmaller, 1));
+    const auto each_size = [&](const auto& make) {
+        each_layout(small, spp * kSmaller * kSmaller, make);
+        each_layout(large, spp, make);
+    };
+
+    for (const int threads : one_and_all(plan.most_threads)) {
+        settings.threads = threads;
+        each_size([&](const auto&... what) { return time_case(what..., settings, plan.repeats); });
     }
-    [[nodiscard]] std::vector<Column> columns() const override {
-        std::vector<Column> columns = render_columns();
-        columns.insert(
-            columns.end(),
+
+    // Misses, of one thread.
+    settings.threads = 1;
+    if (has_hardware_counters()) {
+        each_size([&](const auto&... what) { return hardware_case(what..., settings, plan.repeats); });
+    } else if (cachegrind_command().why.empty()) {
+        const auto make = [&](const Pair& pair, const char* layout, const auto& scene) {
+            return cachegrind_case(pair, layout, options.scene, scene, settings);
+        };
+        const std::int64_t most_width = std::min(width, kSimulatedWidth);
+        if (!options.is_quick)
+            each_layout(study_scene(options.scene, std::max<std::int64_t>(most_width * 2 / 5, 1)), 2, make);
+        each_layout(study_scene(options.scene, most_width), options.is_quick ? 1 : 2, make);
+    }
+    return cases;
+}
+
+nlohmann::json framebuffer_facts() {
+    return {{"second_level_cache_bytes", sysconf(_SC_LEVEL2_CACHE_SIZE)},
+            {"why_nothing_is_simulated", has_hardware_counters() ? "" : cachegrind_command().why},
+            {"simulated_first_level", kSimulatedD1},
+            {"simulated_last_level", kSimulatedLl}};
+}
+
+}  // namespace
+
+Study framebuffer_study() {
+    return {
+        .name = "framebuffer",
+        .question = "Do a pixel's sums side by side save time or cache misses over three planes?",
+        .columns = render_columns(
             {{"layout", ColumnType::Text, "interleaved: a pixel's three sums side by side; planar: in three planes"},
              {"framebuffer_bytes", ColumnType::Count, "of all sums, 8 bytes each"},
              {"paths", ColumnType::Count, "samples rendered"},
@@ -166,78 +202,9 @@ class FramebufferLayout : public Study {
              {"d1_read_misses", ColumnType::Count, "of the first-level cache"},
              {"d1_write_misses", ColumnType::Count, "of the first-level cache"},
              {"ll_read_misses", ColumnType::Count, "of the last-level cache; cachegrind's is the second level"},
-             {"ll_write_misses", ColumnType::Count, "of the last-level cache; cachegrind's is the second level"}});
-        return columns;
-    }
-
-    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
-        const std::int64_t width = choose(options.width, options.is_quick, 800, 800);
-        const std::int64_t spp = choose(options.spp, options.is_quick, 1, 4);
-        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 5, 9));
-        const int most = static_cast<int>(choose(options.threads, false, 0, core_count()));
-        RenderSettings settings;
-        settings.depth = static_cast<std::int32_t>(choose(options.depth, options.is_quick, 50, 50));
-        settings.seed = options.seed;
-        settings.schedule = parse_schedule("dynamic");
-        const auto each_layout = [&](const auto& scene, std::int64_t samples, const auto& add) {
-            settings.end_sample = samples;
-            for (const Pair& pair : pairs())
-                for (const char* layout : {kInterleaved, kPlanar}) add(pair, layout, scene);
-        };
-
-        // Time: one image smaller than the second-level cache and one larger, with as many paths.
-        std::vector<Case> cases;
-        const auto large = study_scene(options.scene, width);
-        const auto small = study_scene(options.scene, std::max<std::int64_t>(width / kSmaller, 1));
-        for (const int threads : one_and_all(most)) {
-            settings.threads = threads;
-            const auto add = [&](const Pair& pair, const char* layout, const auto& scene) {
-                cases.push_back(time_case(pair, layout, scene, settings, repeats));
-            };
-            each_layout(small, spp * kSmaller * kSmaller, add);
-            each_layout(large, spp, add);
-        }
-
-        // Misses, of one thread.
-        settings.threads = 1;
-        if (has_hardware_counters()) {
-            const auto add = [&](const Pair& pair, const char* layout, const auto& scene) {
-                cases.push_back(hardware_case(pair, layout, scene, settings, repeats));
-            };
-            each_layout(small, spp * kSmaller * kSmaller, add);
-            each_layout(large, spp, add);
-        } else if (cachegrind_command().why.empty()) {
-            const auto add = [&](const Pair& pair, const char* layout, const auto& scene) {
-                cases.push_back(cachegrind_case(pair, layout, options.scene, scene, settings));
-            };
-            const std::int64_t most_width = std::min(width, kSimulatedWidth);
-            if (!options.is_quick)
-                each_layout(study_scene(options.scene, std::max<std::int64_t>(most_width * 2 / 5, 1)), 2, add);
-            each_layout(study_scene(options.scene, most_width), options.is_quick ? 1 : 2, add);
-        }
-        return cases;
-    }
-
-    [[nodiscard]] nlohmann::json facts() const override {
-        return {{"second_level_cache_bytes", sysconf(_SC_LEVEL2_CACHE_SIZE)},
-                {"why_nothing_is_simulated", has_hardware_counters() ? "" : cachegrind_command().why},
-                {"simulated_first_level", kSimulatedD1},
-                {"simulated_last_level", kSimulatedLl}};
-    }
-
-  private:
-    static constexpr std::int64_t kSmaller = 5;           ///< times as wide is the large image
-    static constexpr std::int64_t kSimulatedWidth = 320;  ///< whose sums are just too large for kSimulatedLl
-
-    static bool has_hardware_counters() {
-        return count_by_hardware([] {}).has_value();
-    }
-};
-
-}  // namespace
-
-std::unique_ptr<Study> framebuffer_study() {
-    return std::make_unique<FramebufferLayout>();
+             {"ll_write_misses", ColumnType::Count, "of the last-level cache; cachegrind's is the second level"}}),
+        .cases = framebuffer_cases,
+        .facts = framebuffer_facts};
 }
 
 }  // namespace raypool::studies

@@ -1,7 +1,5 @@
 #include "bench/studies/generated_scene.h"
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <stdexcept>
 
@@ -25,23 +23,14 @@ fs::path generator() {
 }  // namespace
 
 GeneratedScene::GeneratedScene(const std::string& kind, std::int64_t shapes)
-    : name_(fmt::format("{} {}", shapes, kind)),
-      path_(fs::temp_directory_path() / fmt::format("raypool-{}-{}-{}.json", getpid(), shapes, kind)) {
+    : name_(fmt::format("{} {}", shapes, kind)) {
     if (run_process(
-            {"/usr/bin/python3", "-B", generator().string(), std::to_string(shapes), kind, "-o", path_.string()}) == 0)
-        return;
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-    throw std::runtime_error(fmt::format("{} could not make {}", generator().string(), name_));
-}
-
-GeneratedScene::~GeneratedScene() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
+            {"/usr/bin/python3", "-B", generator().string(), std::to_string(shapes), kind, "-o", path().string()}) != 0)
+        throw std::runtime_error(fmt::format("{} could not make {}", generator().string(), name_));
 }
 
 Scene GeneratedScene::read() const {
-    Scene scene = read_scene(path_);
+    Scene scene = read_scene(path());
     scene.name = name_;
     return scene;
 }

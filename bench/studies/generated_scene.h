@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
+#include "bench/studies/scratch_folder.h"
 #include "core/scene/scene.h"
 
 namespace raypool::studies {
@@ -18,16 +18,13 @@ inline constexpr const char* kSceneKinds[] = {"spheres", "quads", "cluster"};
 class GeneratedScene {
   public:
     GeneratedScene(const std::string& kind, std::int64_t shapes);
-    GeneratedScene(const GeneratedScene&) = delete;
-    GeneratedScene& operator=(const GeneratedScene&) = delete;
-    ~GeneratedScene();
 
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    [[nodiscard]] std::filesystem::path path() const { return folder_.file("scene.json"); }
     [[nodiscard]] Scene read() const;
 
   private:
     std::string name_;
-    std::filesystem::path path_;
+    ScratchFolder folder_;
 };
 
 }  // namespace raypool::studies

@@ -3,24 +3,18 @@
 
 #include <fmt/format.h>
 
+#include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/replay_ways.h"
 #include "bench/studies/runner.h"
-#include "bench/studies/studies.h"
-#include "wavefront/engine.h"
 #include "wavefront/ladder.h"
 
 namespace raypool::studies {
 
 namespace {
 
-/// A way of the recursive engine.
-struct Way {
-    const char* name;
-    const char* grain;
-    const char* schedule;
-};
-constexpr Way kWays[] = {
+/// Of the recursive engine.
+constexpr LoopWay kLoadWays[] = {
     {"lines, static (default)", "line", "static"},
     {"lines, static,1", "line", "static,1"},
     {"lines, dynamic", "line", "dynamic"},
@@ -32,140 +26,121 @@ constexpr Way kWays[] = {
 };
 constexpr const char* kShares = "one of all paths, equal shares";
 
-class Load : public Study {
-  public:
-    [[nodiscard]] std::string name() const override { return "load"; }
-    [[nodiscard]] std::string question() const override {
-        return "How evenly does each way of sharing out the image load the threads, counted in rays and in work?";
+std::vector<Cells> count_rows(const std::string& group, const std::string& way, const Engine& engine,
+                              const StudyScene& scene, RenderSettings settings) {
+    settings.count_work = true;
+    const Measured counted = measure(engine, scene, settings);
+    settings.count_work = false;
+    const bool is_timed = settings.threads <= core_count();
+    const Measured timed = is_timed ? measure(engine, scene, settings) : counted;
+    if (timed.hash != counted.hash) throw WrongImage(way + ": the image differs when tests are counted");
+    std::vector<Cells> rows;
+    for (std::size_t i = 0; i < counted.report.threads.size(); ++i) {
+        const ThreadReport& work = counted.report.threads[i];
+        rows.push_back({{"group", group},
+                        {"way", way},
+                        {"source", "counted"},
+                        {"threads", settings.threads},
+                        {"thread", i},
+                        {"segments", work.segments},
+                        {"box_tests", work.box_tests},
+                        {"primitive_tests", work.primitive_tests},
+                        {"tests", work.box_tests + work.primitive_tests},
+                        {"busy_s", is_timed ? Value(timed.report.threads[i].busy_s) : Value()},
+                        {"wait_s", is_timed ? Value(timed.report.threads[i].wait_s) : Value()},
+                        {"hash", counted.hash}});
     }
-    [[nodiscard]] std::vector<Column> columns() const override {
-        return {{"group", ColumnType::Text, "recursion or pool"},
-                {"way", ColumnType::Text, "grain and schedule, or rung of the ladder"},
-                {"source", ColumnType::Text,
-                 "counted: by a real run of so many threads; replayed: from the counted costs of paths, where a real "
-                 "run with more threads than cores would show the operating system's time slices"},
-                {"threads", ColumnType::Count, "of the loop"},
-                {"thread", ColumnType::Count, "which, from 0"},
-                {"segments", ColumnType::Count, "rays that it traced"},
-                {"box_tests", ColumnType::Count, "ray against box"},
-                {"primitive_tests", ColumnType::Count, "ray against primitive"},
-                {"tests", ColumnType::Count, "both: the unit of work"},
-                {"busy_s", ColumnType::Real, "working; no more threads than cores only"},
-                {"wait_s", ColumnType::Real, "waiting for others; no more threads than cores only"},
-                {"hash", ColumnType::Text, "counted: of the sums of the image"}};
-    }
+    return rows;
+}
 
-    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
-        const auto scene = study_scene(options.scene, choose(options.width, options.is_quick, 240, 800));
-        RenderSettings settings;
-        settings.end_sample = choose(options.spp, options.is_quick, 4, 8);
-        settings.depth = static_cast<std::int32_t>(choose(options.depth, false, 0, 50));
-        settings.seed = options.seed;
-        settings.threads = static_cast<int>(choose(options.threads, false, 0, 8));
-        // Counts do not change from run to run; times do.
-        const bool is_timed = settings.threads <= core_count();
-        const int repeats = is_timed ? static_cast<int>(choose(options.repeats, options.is_quick, 3, 5)) : 1;
-
-        std::vector<Case> cases;
-        std::vector<Way> replayed;
-        const auto add = [&](const std::string& group, const NamedEngine& engine, const Way& way) {
-            settings.grain = parse_grain(way.grain);
-            settings.schedule = parse_schedule(way.schedule);
-            cases.push_back({fmt::format("{}, {}", group, way.name), image_of(*scene, settings), repeats,
-                             [=, this, name = std::string(way.name)] {
-                                 return count(group, name, *engine.engine, *scene, settings);
-                             }});
-        };
-        for (const Way& way : kWays) {
-            if (is_timed || parse_schedule(way.schedule).kind == LoopSchedule::Kind::Static) {
-                add("recursion", recursive_engine(), way);
-            } else {
-                replayed.push_back(way);
-            }
-        }
-        for (wavefront::Rung& rung : wavefront::ladder(settings.threads)) {
-            rung.pool.batch_schedule = parse_schedule("static,1");  // so that counts are the same in every run
-            add("pool", {rung.name, std::make_shared<wavefront::WavefrontEngine>(rung.pool)},
-                {rung.name, "line", "static,1"});
-        }
-        add("pool", fused_pool(), {"fused, lines, static", "line", "static"});
-        add("pool", fused_pool(), {"fused, pixels, static,1", "pixel", "static,1"});
-        cases.push_back({"replayed", "", 1, [=, this] { return replay_ways(*scene, settings, replayed); }});
-        return cases;
+/// Loops over items that real threads would take as they please, and the pool of the paper's description: all paths of
+/// the image, each round in equal shares.
+std::vector<Cells> replay_load(const StudyScene& scene, const RenderSettings& settings,
+                               const std::vector<LoopWay>& loops) {
+    const PathCosts costs = record_costs(scene, settings);
+    const int threads = settings.threads;
+    std::vector<Cells> rows;
+    const auto row = [&](const char* group, const char* way, std::size_t thread, const Tally& tally) {
+        return Cells{{"group", group},        {"way", way},       {"source", "replayed"},
+                     {"threads", threads},    {"thread", thread}, {"segments", tally.segments},
+                     {"tests", tally.tests()}};
+    };
+    for (const LoopWay& way : loops) {
+        const ReplayWay loop = loop_way(way);
+        const Replayed result = prepare(loop, costs, kTests).replay(threads, {}, {});
+        std::vector<Tally> work(static_cast<std::size_t>(threads));
+        const std::vector<Tally> items = costs.items(loop.grain);
+        for (std::size_t i = 0; i < items.size(); ++i) work[static_cast<std::size_t>(result.owner[i])].add(items[i]);
+        for (std::size_t i = 0; i < work.size(); ++i)
+            rows.push_back(row("recursion", way.name, i, work[i]) +
+                           Cells{{"box_tests", work[i].box_tests}, {"primitive_tests", work[i].primitive_tests}});
     }
+    const ReplayWay shares{kShares, ReplayWay::Kind::Drained, {}, {}, 0, 1};
+    const std::vector<double> segments = prepare(shares, costs, {1, 0}).replay(threads, {}, {}).work;
+    const std::vector<double> tests = prepare(shares, costs, kTests).replay(threads, {}, {}).work;
+    for (std::size_t i = 0; i < segments.size(); ++i)
+        rows.push_back(
+            row("pool", kShares, i, {static_cast<std::int64_t>(segments[i]), static_cast<std::int64_t>(tests[i]), 0}));
+    return rows;
+}
 
-  private:
-    std::vector<Row> count(const std::string& group, const std::string& way, const Engine& engine,
-                           const StudyScene& scene, RenderSettings settings) const {
-        settings.count_work = true;
-        const Measured counted = measure(engine, scene, settings);
-        settings.count_work = false;
-        const bool is_timed = settings.threads <= core_count();
-        const Measured timed = is_timed ? measure(engine, scene, settings) : counted;
-        if (timed.hash != counted.hash) throw WrongImage(way + ": the image differs when tests are counted");
-        std::vector<Row> rows;
-        for (std::size_t i = 0; i < counted.report.threads.size(); ++i) {
-            const ThreadReport& work = counted.report.threads[i];
-            rows.push_back(
-                sparse_row(columns(), {{"group", group},
-                                       {"way", way},
-                                       {"source", "counted"},
-                                       {"threads", settings.threads},
-                                       {"thread", i},
-                                       {"segments", work.segments},
-                                       {"box_tests", work.box_tests},
-                                       {"primitive_tests", work.primitive_tests},
-                                       {"tests", work.box_tests + work.primitive_tests},
-                                       {"busy_s", is_timed ? Value(timed.report.threads[i].busy_s) : Value()},
-                                       {"wait_s", is_timed ? Value(timed.report.threads[i].wait_s) : Value()},
-                                       {"hash", counted.hash}}));
-        }
-        return rows;
-    }
+std::vector<Case> load_cases(const StudyOptions& options) {
+    const auto scene = study_scene(options.scene, choose(options, options.width, {240, 800}));
+    Plan plan = plan_of(options, {4, 8}, {3, 5}, 8);
+    RenderSettings settings = plan.settings;
+    settings.threads = plan.most_threads;
+    // Counts do not change from run to run; times do.
+    const bool is_timed = settings.threads <= core_count();
+    const int repeats = is_timed ? plan.repeats : 1;
 
-    /// Loops over items that real threads would take as they please, and the pool of the paper's description: all
-    /// paths of the image, each round in equal shares.
-    std::vector<Row> replay_ways(const StudyScene& scene, const RenderSettings& settings,
-                                 const std::vector<Way>& loops) const {
-        const PathCosts costs = record_costs(scene, settings);
-        const int threads = settings.threads;
-        std::vector<Row> rows;
-        const auto add = [&](const char* group, const std::string& way, std::size_t thread, const Tally& tally,
-                             bool is_split) {
-            rows.push_back(
-                sparse_row(columns(), {{"group", group},
-                                       {"way", way},
-                                       {"source", "replayed"},
-                                       {"threads", threads},
-                                       {"thread", thread},
-                                       {"segments", tally.segments},
-                                       {"box_tests", is_split ? Value(tally.box_tests) : Value()},
-                                       {"primitive_tests", is_split ? Value(tally.primitive_tests) : Value()},
-                                       {"tests", tally.tests()}}));
-        };
-        for (const Way& way : loops) {
-            const ReplayWay loop = loop_way(way.name, way.grain, way.schedule);
-            const Replayed result = prepare(loop, costs, kTests).replay(threads, {});
-            std::vector<Tally> work(static_cast<std::size_t>(threads));
-            const std::vector<Tally> items = costs.items(loop.grain);
-            for (std::size_t i = 0; i < items.size(); ++i)
-                work[static_cast<std::size_t>(result.owner[i])].add(items[i]);
-            for (std::size_t i = 0; i < work.size(); ++i) add("recursion", way.name, i, work[i], true);
+    std::vector<Case> cases;
+    std::vector<LoopWay> replayed;
+    const auto add = [&](const std::string& group, const NamedEngine& engine, const LoopWay& way) {
+        settings = with_way(settings, way);
+        cases.push_back(
+            {fmt::format("{}, {}", group, way.name), image_of(*scene, settings), repeats,
+             [=, name = std::string(way.name)] { return count_rows(group, name, *engine.engine, *scene, settings); }});
+    };
+    for (const LoopWay& way : kLoadWays) {
+        if (is_timed || parse_schedule(way.schedule).kind == LoopSchedule::Kind::Static) {
+            add("recursion", recursive_engine(), way);
+        } else {
+            replayed.push_back(way);
         }
-        const ReplayWay shares{kShares, ReplayWay::Kind::Drained, {}, {}, 0, 1};
-        const std::vector<double> segments = prepare(shares, costs, {1, 0}).replay(threads, {}).work;
-        const std::vector<double> tests = prepare(shares, costs, kTests).replay(threads, {}).work;
-        for (std::size_t i = 0; i < segments.size(); ++i)
-            add("pool", kShares, i, {static_cast<std::int64_t>(segments[i]), static_cast<std::int64_t>(tests[i]), 0},
-                false);
-        return rows;
     }
-};
+    for (wavefront::Rung& rung : wavefront::ladder(settings.threads)) {
+        rung.pool.batch_schedule = parse_schedule("static,1");  // so that counts are the same in every run
+        add("pool", pool_engine(rung.name, rung.pool), {rung.name, "line", "static,1"});
+    }
+    add("pool", fused_pool(), {"fused, lines, static", "line", "static"});
+    add("pool", fused_pool(), {"fused, pixels, static,1", "pixel", "static,1"});
+    cases.push_back({"replayed", "", 1, [=] { return replay_load(*scene, settings, replayed); }});
+    return cases;
+}
 
 }  // namespace
 
-std::unique_ptr<Study> load_study() {
-    return std::make_unique<Load>();
+Study load_study() {
+    return {.name = "load",
+            .question =
+                "How evenly does each way of sharing out the image load the threads, counted in rays and in "
+                "work?",
+            .columns =
+                {{"group", ColumnType::Text, "recursion or pool"},
+                 {"way", ColumnType::Text, "grain and schedule, or rung of the ladder"},
+                 {"source", ColumnType::Text,
+                  "counted: by a real run of so many threads; replayed: from the counted costs of paths, where a real "
+                  "run with more threads than cores would show the operating system's time slices"},
+                 {"threads", ColumnType::Count, "of the loop"},
+                 {"thread", ColumnType::Count, "which, from 0"},
+                 {"segments", ColumnType::Count, "rays that it traced"},
+                 {"box_tests", ColumnType::Count, "ray against box"},
+                 {"primitive_tests", ColumnType::Count, "ray against primitive"},
+                 {"tests", ColumnType::Count, "both: the unit of work"},
+                 {"busy_s", ColumnType::Real, "working; no more threads than cores only"},
+                 {"wait_s", ColumnType::Real, "waiting for others; no more threads than cores only"},
+                 {"hash", ColumnType::Text, "counted: of the sums of the image"}},
+            .cases = load_cases};
 }
 
 }  // namespace raypool::studies

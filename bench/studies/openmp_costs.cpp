@@ -38,8 +38,8 @@ double median_of_batches(Function function) {
     return median(seconds);
 }
 
-}  // namespace
-
+/// What a dynamic loop of short chunks takes more than a static one, for each chunk. The counter then comes from
+/// another core's cache; in an empty loop one core would keep it.
 double chunk_fetch_seconds(int threads) {
     constexpr std::int64_t kChunks = 5'000;
     constexpr std::int64_t kSteps = 1'000;  // a microsecond or two: the counter has gone to another core meanwhile
@@ -77,6 +77,8 @@ double barrier_seconds(int threads) {
         return seconds / kBarriers;
     });
 }
+
+}  // namespace
 
 double compute_loop_seconds(int threads, double seconds) {
     constexpr double kStepsPerSecond = 5e8;  // roughly, of one core

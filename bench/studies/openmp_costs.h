@@ -7,22 +7,15 @@
 
 namespace raypool::studies {
 
-/// Processor time that a thread spends on fetching one chunk of a dynamic loop of short chunks: what the loop takes
-/// more than a static one. The counter then comes from another core's cache; in an empty loop one core would keep it.
-double chunk_fetch_seconds(int threads);
-
-/// Seconds from the last thread's coming to a barrier until all go on.
-double barrier_seconds(int threads);
-
 /// Seconds that each of `threads` threads takes for the same amount of arithmetic in registers, all at once: what
 /// remains of the machine's speed when more threads run is no engine's fault. About `seconds` on one thread.
 double compute_loop_seconds(int threads, double seconds);
 
-/// The first two, measured for thread counts up to the cores.
+/// Measured for thread counts up to the cores.
 struct OpenMpCosts {
     std::vector<int> threads;
-    std::vector<double> fetch_s;
-    std::vector<double> barrier_s;
+    std::vector<double> fetch_s;    ///< processor time of a thread that fetches a chunk of a dynamic loop
+    std::vector<double> barrier_s;  ///< from the last thread's coming to a barrier until all go on
 
     /// Costs of a replay. A round of a shared pool has three barriers (wavefront/rounds.h). Beyond the cores that could
     /// be measured, a fetch costs what it costs with all of them, and a barrier grows with the logarithm of the

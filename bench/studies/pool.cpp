@@ -5,10 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/studies.h"
 #include "core/runtime/settings_text.h"
-#include "wavefront/engine.h"
 #include "wavefront/ladder.h"
 #include "wavefront/setting_names.h"
 
@@ -57,28 +56,23 @@ std::vector<std::int64_t> capacities(std::int64_t paths, std::int64_t factor) {
     return list;
 }
 
-/// The columns behind those of every render, of which `axis` says what a row is for.
-Row pool_cells(const std::string& axis, const PoolSettings& pool) {
-    return {axis,
-            to_string(pool.scope),
-            to_string(pool.refill),
-            to_string(pool.camera),
-            to_string(pool.width),
-            to_string(pool.sort),
-            pool.capacity,
-            pool.batch};
+/// Behind the cells of every render; `axis` says what a row is for.
+Cells pool_cells(const std::string& axis, const PoolSettings& pool) {
+    return {{"axis", axis},
+            {"scope", to_string(pool.scope)},
+            {"refill", to_string(pool.refill)},
+            {"camera", to_string(pool.camera)},
+            {"stage_width", to_string(pool.width)},
+            {"sort", to_string(pool.sort)},
+            {"capacity", pool.capacity},
+            {"batch", pool.batch}};
 }
-constexpr std::size_t kPoolCells = 8;
-constexpr std::size_t kRoundCells = 5;
 
 Case pool_case(const std::string& axis, const Line& line, const std::shared_ptr<const StudyScene>& scene,
                const RenderSettings& settings, int repeats) {
-    Row cells = pool_cells(axis, line.pool);
-    cells.insert(cells.end(), kRoundCells, nullptr);
     return render_case(fmt::format("{}: {}, {} records, sort {}, batch {}, {} threads", axis, line.name,
                                    line.pool.capacity, to_string(line.pool.sort), line.pool.batch, settings.threads),
-                       {line.name, std::make_shared<wavefront::WavefrontEngine>(line.pool)}, scene, settings, repeats,
-                       cells);
+                       pool_engine(line.name, line.pool), scene, settings, repeats, pool_cells(axis, line.pool));
 }
 
 /// A row for each round in which records were advanced. After a round without any, a pool that drains is full again:
@@ -86,119 +80,108 @@ Case pool_case(const std::string& axis, const Line& line, const std::shared_ptr<
 Case rounds_case(const Line& line, const std::shared_ptr<const StudyScene>& scene, RenderSettings settings) {
     settings.log_rounds = true;
     const auto run = [line, scene, settings]() {
-        const wavefront::WavefrontEngine engine(line.pool);
-        const Measured measured = measure(engine, *scene, settings);
-        std::vector<Row> rows;
+        const NamedEngine engine = pool_engine(line.name, line.pool);
+        const Measured measured = measure(*engine.engine, *scene, settings);
+        std::vector<Cells> rows;
         std::int64_t round = 0;
         std::int64_t depth = 0;
         for (const RoundReport& work : measured.report.rounds) {
             depth = work.records_in == 0 ? 0 : depth + 1;
             ++round;
             if (work.records_in == 0) continue;
-            Row row = render_row(line.name, engine, *scene, settings, measured);
-            for (const Value& cell : pool_cells("rounds", line.pool)) row.push_back(cell);
-            row.insert(row.end(), {round, line.pool.refill == Refill::Drain ? Value(depth) : Value(nullptr),
-                                   work.records_in, work.records_out, work.lanes});
-            rows.push_back(std::move(row));
+            rows.push_back(render_cells(engine, *scene, settings, measured) + pool_cells("rounds", line.pool) +
+                           Cells{{"round", round},
+                                 {"depth", line.pool.refill == Refill::Drain ? Value(depth) : Value(nullptr)},
+                                 {"records_in", work.records_in},
+                                 {"records_out", work.records_out},
+                                 {"lanes", work.lanes}});
         }
         return rows;
     };
     return {fmt::format("rounds: {}", line.name), image_of(*scene, settings), 1, run};
 }
 
-class Pool : public Study {
-  public:
-    [[nodiscard]] std::string name() const override { return "pool"; }
-    [[nodiscard]] std::string question() const override {
-        return "From what capacity on does a pool beat recursion, and what do scope, refill, sorting and batches "
-               "matter?";
-    }
-    [[nodiscard]] std::vector<Column> columns() const override {
-        std::vector<Column> columns = render_columns();
-        columns.insert(
-            columns.end(),
-            {{"axis", ColumnType::Text, "what the row is for: recursion, capacity, sort, batch or rounds"},
-             {"scope", ColumnType::Text, "one pool shared by all threads, or one for each thread"},
-             {"refill", ColumnType::Text, "camera rays enter the empty pool (drain), or as soon as there is room"},
-             {"camera", ColumnType::Text, "camera rays enter at once (staged) or after their first bounce (fused)"},
-             {"stage_width", ColumnType::Text, "a ray at a time (scalar) or a register of them (simd)"},
-             {"sort", ColumnType::Text, "order of records before shading"},
-             {"capacity", ColumnType::Count, "records, of each pool"},
-             {"batch", ColumnType::Count, "records that a thread takes at a time from a shared pool"},
-             {"round", ColumnType::Count, "number of the round"},
-             {"depth", ColumnType::Count, "rounds since the pool was filled, of a pool that drains"},
-             {"records_in", ColumnType::Count, "records advanced in the round"},
-             {"records_out", ColumnType::Count, "of these, alive afterwards"},
-             {"lanes", ColumnType::Count, "lanes of registers used for them"}});
-        return columns;
-    }
+/// The pools that all threads share, but for the paper's own.
+std::vector<Line> shared_lines() {
+    std::vector<Line> shared = lines();
+    std::erase_if(shared,
+                  [](const Line& line) { return line.pool.scope != PoolScope::Shared || line.name == kPaperPool; });
+    return shared;
+}
 
-    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
-        const auto scene = study_scene(options.scene, choose(options.width, options.is_quick, 200, 400));
-        RenderSettings settings;
-        settings.end_sample = choose(options.spp, options.is_quick, 4, 8);
-        settings.depth = static_cast<std::int32_t>(choose(options.depth, options.is_quick, 50, 50));
-        settings.seed = options.seed;
-        settings.schedule = parse_schedule("dynamic");
-        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 5, 7));
-        const int most = static_cast<int>(choose(options.threads, false, 0, core_count()));
-        const std::int64_t paths = scene->compiled.pixel_count() * settings.end_sample;
+/// Of a drained and a regenerating pool, over a few fillings.
+void add_rounds(std::vector<Case>& cases, const std::shared_ptr<const StudyScene>& scene, RenderSettings settings) {
+    constexpr std::int64_t kFillings = 4;
+    const std::int64_t pixels = scene->compiled.pixel_count();
+    settings.threads = 1;  // so that every run has the same rounds
+    settings.end_sample =
+        std::clamp<std::int64_t>(kFillings * PoolSettings::kSharedCapacity / pixels, 1, settings.end_sample);
+    for (Line line : shared_lines()) {
+        line.pool.capacity =
+            std::clamp<std::int64_t>(pixels * settings.end_sample / kFillings, 64, PoolSettings::kSharedCapacity);
+        cases.push_back(rounds_case(line, scene, settings));
+    }
+}
 
-        std::vector<Case> cases;
-        for (const int threads : one_and_all(most)) {
-            settings.threads = threads;
-            Row recursion{"recursion"};
-            recursion.insert(recursion.end(), kPoolCells - 1 + kRoundCells, nullptr);
-            cases.push_back(render_case(fmt::format("recursive, {} threads", threads), recursive_engine(), scene,
-                                        settings, repeats, recursion));
-            for (Line line : lines()) {
-                for (const std::int64_t capacity : capacities(paths, options.is_quick ? 16 : 4)) {
-                    line.pool.capacity = capacity;
-                    line.pool.batch = batch_for(capacity, threads);
-                    cases.push_back(pool_case("capacity", line, scene, settings, repeats));
-                }
-            }
-            for (Line line : lines()) {
-                if (line.name == kPaperPool) continue;
-                for (const Sort sort : {Sort::None, Sort::Material}) {
-                    line.pool.sort = sort;
-                    cases.push_back(pool_case("sort", line, scene, settings, repeats));
-                }
+std::vector<Case> pool_study_cases(const StudyOptions& options) {
+    const auto scene = study_scene(options.scene, choose(options, options.width, {200, 400}));
+    const Plan plan = plan_of(options, {4, 8}, {5, 7}, core_count());
+    RenderSettings settings = plan.settings;
+    settings.schedule = parse_schedule("dynamic");
+    const std::int64_t paths = scene->compiled.pixel_count() * settings.end_sample;
+
+    std::vector<Case> cases;
+    for (const int threads : one_and_all(plan.most_threads)) {
+        settings.threads = threads;
+        cases.push_back(render_case(fmt::format("recursive, {} threads", threads), recursive_engine(), scene, settings,
+                                    plan.repeats, {{"axis", "recursion"}}));
+        for (Line line : lines()) {
+            for (const std::int64_t capacity : capacities(paths, options.is_quick ? 16 : 4)) {
+                line.pool.capacity = capacity;
+                line.pool.batch = batch_for(capacity, threads);
+                cases.push_back(pool_case("capacity", line, scene, settings, plan.repeats));
             }
         }
         for (Line line : lines()) {
-            if (line.pool.scope != PoolScope::Shared || line.name == kPaperPool) continue;
-            for (const std::int64_t batch : {256, 1024, 4096, 16384}) {
-                line.pool.batch = batch;
-                cases.push_back(pool_case("batch", line, scene, settings, repeats));
+            if (line.name == kPaperPool) continue;
+            for (const Sort sort : {Sort::None, Sort::Material}) {
+                line.pool.sort = sort;
+                cases.push_back(pool_case("sort", line, scene, settings, plan.repeats));
             }
         }
-        add_rounds(cases, scene, settings);
-        return cases;
     }
-
-  private:
-    /// Of a drained and a regenerating pool, over a few fillings.
-    static void add_rounds(std::vector<Case>& cases, const std::shared_ptr<const StudyScene>& scene,
-                           RenderSettings settings) {
-        constexpr std::int64_t kFillings = 4;
-        const std::int64_t pixels = scene->compiled.pixel_count();
-        settings.threads = 1;  // so that every run has the same rounds
-        settings.end_sample =
-            std::clamp<std::int64_t>(kFillings * PoolSettings::kSharedCapacity / pixels, 1, settings.end_sample);
-        for (Line line : lines()) {
-            if (line.pool.scope != PoolScope::Shared || line.name == kPaperPool) continue;
-            line.pool.capacity =
-                std::clamp<std::int64_t>(pixels * settings.end_sample / kFillings, 64, PoolSettings::kSharedCapacity);
-            cases.push_back(rounds_case(line, scene, settings));
+    for (Line line : shared_lines()) {
+        for (const std::int64_t batch : {256, 1024, 4096, 16384}) {
+            line.pool.batch = batch;
+            cases.push_back(pool_case("batch", line, scene, settings, plan.repeats));
         }
     }
-};
+    add_rounds(cases, scene, settings);
+    return cases;
+}
 
 }  // namespace
 
-std::unique_ptr<Study> pool_study() {
-    return std::make_unique<Pool>();
+Study pool_study() {
+    return {.name = "pool",
+            .question =
+                "From what capacity on does a pool beat recursion, and what do scope, refill, sorting and "
+                "batches matter?",
+            .columns = render_columns(
+                {{"axis", ColumnType::Text, "what the row is for: recursion, capacity, sort, batch or rounds"},
+                 {"scope", ColumnType::Text, "one pool shared by all threads, or one for each thread"},
+                 {"refill", ColumnType::Text, "camera rays enter the empty pool (drain), or as soon as there is room"},
+                 {"camera", ColumnType::Text, "camera rays enter at once (staged) or after their first bounce (fused)"},
+                 {"stage_width", ColumnType::Text, "a ray at a time (scalar) or a register of them (simd)"},
+                 {"sort", ColumnType::Text, "order of records before shading"},
+                 {"capacity", ColumnType::Count, "records, of each pool"},
+                 {"batch", ColumnType::Count, "records that a thread takes at a time from a shared pool"},
+                 {"round", ColumnType::Count, "number of the round"},
+                 {"depth", ColumnType::Count, "rounds since the pool was filled, of a pool that drains"},
+                 {"records_in", ColumnType::Count, "records advanced in the round"},
+                 {"records_out", ColumnType::Count, "of these, alive afterwards"},
+                 {"lanes", ColumnType::Count, "lanes of registers used for them"}}),
+            .cases = pool_study_cases};
 }
 
 }  // namespace raypool::studies

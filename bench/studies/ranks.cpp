@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "bench/studies/path_costs.h"
+#include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/studies.h"
 #include "cluster/work_units.h"
 
 namespace raypool::studies {
@@ -99,7 +99,7 @@ class Recording {
     double unit_start_ = 0;
 };
 
-Row simulate(Recording& recording, std::int64_t spp, int ranks) {
+Cells simulate(Recording& recording, std::int64_t spp, int ranks) {
     const UnitCosts& costs = recording.costs();
     std::vector<double> items;
     for (const cluster::WorkUnit& unit : cluster::work_units({0, spp}, costs.pixels(), ranks))
@@ -116,68 +116,56 @@ Row simulate(Recording& recording, std::int64_t spp, int ranks) {
     speeds.resize(static_cast<std::size_t>(ranks), 1.0);
     const double slow = replay(items, in_order, ranks, ranks == 1 ? ReplayCosts{} : all, speeds).makespan + reduced;
     const double ideal = work / ranks;
-    return {spp,
-            ranks,
-            static_cast<std::int64_t>(items.size()),
-            ideal,
-            balanced - ideal,
-            shared - balanced,
-            reduced,
-            ideal / (shared + reduced),
-            work / (ranks - 1 + kSlowSpeed) / slow};
+    return {{"spp", spp},
+            {"ranks", ranks},
+            {"units", items.size()},
+            {"ideal_s", ideal},
+            {"last_units_s", balanced - ideal},
+            {"questions_s", shared - balanced},
+            {"reduction_s", reduced},
+            {"efficiency", ideal / (shared + reduced)},
+            {"slow_efficiency", work / (ranks - 1 + kSlowSpeed) / slow}};
 }
 
-class RankStudy : public Study {
-  public:
-    [[nodiscard]] std::string name() const override { return "ranks"; }
-    [[nodiscard]] std::string question() const override {
-        return "How far do MPI ranks scale, simulated to 10,000 from recorded costs, and what stops them?";
-    }
-    [[nodiscard]] std::vector<Column> columns() const override {
-        return {
-            {"spp", ColumnType::Count, "samples per pixel of the render that is simulated"},
-            {"ranks", ColumnType::Count, "ranks of one thread, of one speed"},
-            {"units", ColumnType::Count, "of work that are handed out"},
-            {"ideal_s", ColumnType::Real, "an equal share of the work, s"},
-            {"last_units_s", ColumnType::Signed, "lost because some have nothing while others end their last unit, s"},
-            {"questions_s", ColumnType::Signed, "lost to asking for units and starting them, s"},
-            {"reduction_s", ColumnType::Real, "of the sums, s"},
-            {"efficiency", ColumnType::Real, "ideal over all of it"},
-            {"slow_efficiency", ColumnType::Real, "the same, with one rank at a quarter of the speed"}};
-    }
+std::vector<Case> rank_cases(const StudyOptions& options) {
+    const auto scene = study_scene(options.scene, choose(options, options.width, {160, 800}));
+    const Plan plan = plan_of(options, {2, 4}, {1, 5}, 1);
+    const auto recording = std::make_shared<Recording>(scene, plan.settings, plan.repeats);
+    std::vector<Case> cases;
+    for (const std::int64_t spp : {100, 1000, 10000, 100000})
+        for (int power = 1; power <= kMostRanks; power *= 10)
+            for (const int ranks : {power, 2 * power, 5 * power})
+                if (ranks <= kMostRanks)
+                    cases.push_back({fmt::format("{} spp, {} ranks", spp, ranks), "", 1,
+                                     [=] { return std::vector<Cells>{simulate(*recording, spp, ranks)}; }});
+    return cases;
+}
 
-    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
-        const auto scene = study_scene(options.scene, choose(options.width, options.is_quick, 160, 800));
-        RenderSettings settings;
-        settings.end_sample = choose(options.spp, options.is_quick, 2, 4);
-        settings.depth = static_cast<std::int32_t>(choose(options.depth, options.is_quick, 50, 50));
-        settings.seed = options.seed;
-        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 1, 5));
-        const auto recording = std::make_shared<Recording>(scene, settings, repeats);
-
-        std::vector<Case> cases;
-        for (const std::int64_t spp : {100, 1000, 10000, 100000})
-            for (int power = 1; power <= kMostRanks; power *= 10)
-                for (const int ranks : {power, 2 * power, 5 * power})
-                    if (ranks <= kMostRanks)
-                        cases.push_back({fmt::format("{} spp, {} ranks", spp, ranks), "", 1,
-                                         [=] { return std::vector<Row>{simulate(*recording, spp, ranks)}; }});
-        return cases;
-    }
-
-    [[nodiscard]] nlohmann::json facts() const override {
-        return {{"bytes_per_second", kBytesPerSecond},
-                {"latency_s", kLatency},
-                {"look_s", kLook},
-                {"serve_s", kServe},
-                {"pixel_bytes", kPixelBytes}};
-    }
-};
+nlohmann::json rank_facts() {
+    return {{"bytes_per_second", kBytesPerSecond},
+            {"latency_s", kLatency},
+            {"look_s", kLook},
+            {"serve_s", kServe},
+            {"pixel_bytes", kPixelBytes}};
+}
 
 }  // namespace
 
-std::unique_ptr<Study> ranks_study() {
-    return std::make_unique<RankStudy>();
+Study ranks_study() {
+    return {.name = "ranks",
+            .question = "How far do MPI ranks scale, simulated to 10,000 from recorded costs, and what stops them?",
+            .columns = {{"spp", ColumnType::Count, "samples per pixel of the render that is simulated"},
+                        {"ranks", ColumnType::Count, "ranks of one thread, of one speed"},
+                        {"units", ColumnType::Count, "of work that are handed out"},
+                        {"ideal_s", ColumnType::Real, "an equal share of the work, s"},
+                        {"last_units_s", ColumnType::Signed,
+                         "lost because some have nothing while others end their last unit, s"},
+                        {"questions_s", ColumnType::Signed, "lost to asking for units and starting them, s"},
+                        {"reduction_s", ColumnType::Real, "of the sums, s"},
+                        {"efficiency", ColumnType::Real, "ideal over all of it"},
+                        {"slow_efficiency", ColumnType::Real, "the same, with one rank at a quarter of the speed"}},
+            .cases = rank_cases,
+            .facts = rank_facts};
 }
 
 }  // namespace raypool::studies

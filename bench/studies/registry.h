@@ -1,7 +1,6 @@
-/// All studies, by name. A new one is listed in registry.cpp.
+/// The studies: each is defined in the file of its name.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,9 +8,25 @@
 
 namespace raypool::studies {
 
-std::vector<std::unique_ptr<Study>> all_studies();
+Study adaptive_study();
+Study depth_study();
+Study features_study();
+Study framebuffer_study();
+Study ladder_study();
+Study load_study();
+Study pool_study();
+Study ranks_study();
+Study replay_study();
+Study scaling_study();
+Study scene_size_study();
+Study schedules_study();
+Study speed_accuracy_study();
+Study stability_study();
+
+/// In the order in which they are listed to users.
+std::vector<Study> all_studies();
 
 /// Throws InputError, with the names there are, for a name that is not one.
-std::unique_ptr<Study> make_study(const std::string& name);
+Study make_study(const std::string& name);
 
 }  // namespace raypool::studies

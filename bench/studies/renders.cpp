@@ -30,10 +30,13 @@ NamedEngine iterative_engine() {
     return {"iterative", std::make_shared<recursive::IterativeEngine>()};
 }
 NamedEngine fused_pool() {
-    return {"pool", std::make_shared<wavefront::WavefrontEngine>(wavefront::PoolSettings{})};
+    return pool_engine("pool", {});
 }
 NamedEngine canonical_pool() {
-    return {"shared pool", std::make_shared<wavefront::WavefrontEngine>(rung_settings("shared-stream", 1))};
+    return pool_engine("shared pool", rung_settings("shared-stream", 1));
+}
+NamedEngine pool_engine(std::string name, const wavefront::PoolSettings& pool) {
+    return {std::move(name), std::make_shared<wavefront::WavefrontEngine>(pool)};
 }
 wavefront::PoolSettings rung_settings(const std::string& rung, int threads) {
     const std::vector<wavefront::Rung> rungs = wavefront::ladder(threads);
@@ -43,9 +46,25 @@ wavefront::PoolSettings rung_settings(const std::string& rung, int threads) {
 }
 std::vector<NamedEngine> ladder_engines(int threads) {
     std::vector<NamedEngine> engines;
-    for (const wavefront::Rung& rung : wavefront::ladder(threads))
-        engines.push_back({rung.name, std::make_shared<wavefront::WavefrontEngine>(rung.pool)});
+    for (const wavefront::Rung& rung : wavefront::ladder(threads)) engines.push_back(pool_engine(rung.name, rung.pool));
     return engines;
+}
+
+RenderSettings with_way(RenderSettings settings, const LoopWay& way) {
+    settings.grain = parse_grain(way.grain);
+    settings.schedule = parse_schedule(way.schedule);
+    return settings;
+}
+
+Plan plan_of(const StudyOptions& options, Usual spp, Usual repeats, int most_threads) {
+    constexpr std::int32_t kDepth = 50;
+    Plan plan;
+    plan.settings.end_sample = choose(options, options.spp, spp);
+    plan.settings.depth = options.depth != 0 ? static_cast<std::int32_t>(options.depth) : kDepth;
+    plan.settings.seed = options.seed;
+    plan.repeats = static_cast<int>(choose(options, options.repeats, repeats));
+    plan.most_threads = options.threads != 0 ? options.threads : most_threads;
+    return plan;
 }
 
 void check_threads(int given, int asked) {
@@ -72,41 +91,47 @@ std::string image_of(const StudyScene& scene, const RenderSettings& settings) {
                        settings.sampler == Sampler::Sobol ? ", sobol" : "", settings.roulette ? ", roulette" : "");
 }
 
-std::vector<Column> render_columns() {
-    return {{"engine", ColumnType::Text, "who rendered"},
-            {"threads", ColumnType::Count, "OpenMP threads"},
-            {"schedule", ColumnType::Text, "of the loop over the image; empty for a shared pool"},
-            {"grain", ColumnType::Text, "what one iteration of that loop renders"},
-            {"width", ColumnType::Count, "image width, pixels"},
-            {"seconds", ColumnType::Real, "wall clock of the render: setup, loops, last pass"},
-            {"mpaths_per_s", ColumnType::Real, "million paths a second"},
-            {"load_max_over_mean", ColumnType::Real, "segments of the busiest thread over the mean"},
-            {"waiting", ColumnType::Real, "part of the threads' time spent waiting for others"},
-            {"hash", ColumnType::Text, "of the sums of the image"}};
+std::vector<Column> render_columns(const std::vector<Column>& more) {
+    std::vector<Column> columns{
+        {"engine", ColumnType::Text, "who rendered"},
+        {"threads", ColumnType::Count, "OpenMP threads"},
+        {"schedule", ColumnType::Text, "of the loop over the image; empty for a shared pool"},
+        {"grain", ColumnType::Text, "what one iteration of that loop renders"},
+        {"width", ColumnType::Count, "image width, pixels"},
+        {"seconds", ColumnType::Real, "wall clock of the render: setup, loops, last pass"},
+        {"mpaths_per_s", ColumnType::Real, "million paths a second"},
+        {"load_max_over_mean", ColumnType::Real, "segments of the busiest thread over the mean"},
+        {"waiting", ColumnType::Real, "part of the threads' time spent waiting for others"},
+        {"hash", ColumnType::Text, "of the sums of the image"}};
+    columns.insert(columns.end(), more.begin(), more.end());
+    return columns;
 }
 
-Row render_row(const std::string& name, const Engine& engine, const StudyScene& scene, const RenderSettings& settings,
-               const Measured& measured) {
+Cells render_cells(const NamedEngine& engine, const StudyScene& scene, const RenderSettings& settings,
+                   const Measured& measured) {
     const RenderReport& report = measured.report;
-    const auto of_loop = [&](const std::string& text) { return engine.loops_over_image() ? Value(text) : Value(); };
-    return {name,
-            settings.threads,
-            of_loop(to_string(settings.schedule)),
-            has_grain(settings.schedule) ? of_loop(to_string(settings.grain)) : Value(),
-            scene.compiled.width,
-            report.seconds,
-            static_cast<double>(report.paths()) / report.seconds * 1e-6,
-            max_over_mean(by_thread(report, &ThreadReport::segments)),
-            waiting(report),
-            measured.hash};
+    Cells cells{{"engine", engine.name},
+                {"threads", settings.threads},
+                {"width", scene.compiled.width},
+                {"seconds", report.seconds},
+                {"mpaths_per_s", static_cast<double>(report.paths()) / report.seconds * 1e-6},
+                {"load_max_over_mean", max_over_mean(by_thread(report, &ThreadReport::segments))},
+                {"waiting", waiting(report)},
+                {"hash", measured.hash}};
+    return cells + loop_cells(engine.engine->loops_over_image(), settings);
+}
+
+Cells loop_cells(bool loops_over_image, const RenderSettings& settings) {
+    if (!loops_over_image) return {};
+    Cells cells{{"schedule", to_string(settings.schedule)}};
+    if (has_grain(settings.schedule)) cells.emplace_back("grain", to_string(settings.grain));
+    return cells;
 }
 
 Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
-                 const RenderSettings& settings, int repeats, const Row& extra) {
-    const auto run = [engine, scene, settings, extra]() -> std::vector<Row> {
-        Row row = render_row(engine.name, *engine.engine, *scene, settings, measure(*engine.engine, *scene, settings));
-        row.insert(row.end(), extra.begin(), extra.end());
-        return {row};
+                 const RenderSettings& settings, int repeats, const Cells& extra) {
+    const auto run = [engine, scene, settings, extra]() -> std::vector<Cells> {
+        return {render_cells(engine, *scene, settings, measure(*engine.engine, *scene, settings)) + extra};
     };
     return {std::move(id), image_of(*scene, settings), repeats, run};
 }

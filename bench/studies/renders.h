@@ -33,8 +33,25 @@ NamedEngine fused_pool();
 NamedEngine canonical_pool();
 /// The pool of a rung of the ladder (wavefront/ladder.h) for so many threads. A name that is none is a bug.
 wavefront::PoolSettings rung_settings(const std::string& rung, int threads);
+NamedEngine pool_engine(std::string name, const wavefront::PoolSettings& pool);
 /// All rungs of the ladder for so many threads, without the two per-pixel engines.
 std::vector<NamedEngine> ladder_engines(int threads);
+
+/// A way of handing out the image, by the texts that users write.
+struct LoopWay {
+    const char* name;
+    const char* grain;
+    const char* schedule;
+};
+RenderSettings with_way(RenderSettings settings, const LoopWay& way);
+
+/// What most studies take from the options.
+struct Plan {
+    RenderSettings settings;  ///< samples, depth (50 unless another is asked for) and seed
+    int repeats = 1;
+    int most_threads = 1;
+};
+Plan plan_of(const StudyOptions& options, Usual spp, Usual repeats, int most_threads);
 
 struct Measured {
     RenderReport report;
@@ -49,15 +66,18 @@ Measured measure(const Engine& engine, const StudyScene& scene, const RenderSett
 /// What fixes the image: cases with the same text must have the same hash.
 std::string image_of(const StudyScene& scene, const RenderSettings& settings);
 
-/// engine, threads, schedule and grain (of engines that loop over the image), width, seconds, mpaths_per_s,
-/// load_max_over_mean, waiting, hash.
-std::vector<Column> render_columns();
-Row render_row(const std::string& name, const Engine& engine, const StudyScene& scene, const RenderSettings& settings,
-               const Measured& measured);
+/// The columns of a render, and `more` behind them: engine, threads, schedule and grain (of engines that loop over the
+/// image), width, seconds, mpaths_per_s, load_max_over_mean, waiting, hash.
+std::vector<Column> render_columns(const std::vector<Column>& more);
+Cells render_cells(const NamedEngine& engine, const StudyScene& scene, const RenderSettings& settings,
+                   const Measured& measured);
 
-/// A case of one row: render_row() and `extra` behind it.
+/// The schedule and grain of an engine that loops over the image; nothing of others.
+Cells loop_cells(bool loops_over_image, const RenderSettings& settings);
+
+/// A case of one row: render_cells() and `extra`.
 Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
-                 const RenderSettings& settings, int repeats, const Row& extra = {});
+                 const RenderSettings& settings, int repeats, const Cells& extra = {});
 
 /// 1, 2, 4, ... up to `most`, and `most` itself.
 std::vector<int> thread_counts(int most);

@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 
 #include "bench/studies/openmp_costs.h"
+#include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/replay_ways.h"
 #include "bench/studies/statistics.h"
-#include "bench/studies/studies.h"
 #include "core/base/first_exception.h"
 #include "wavefront/settings.h"
 
@@ -22,12 +22,7 @@ constexpr const char* kDefaultPool = "a pool each, balanced (default)";
 constexpr const char* kThreadPools = "a pool for each thread";  ///< a group of ways
 
 /// What a run of the recursive engine can be held against.
-struct RealWay {
-    const char* name;
-    const char* grain;
-    const char* schedule;
-};
-constexpr RealWay kRealWays[] = {
+constexpr LoopWay kRealWays[] = {
     {"balanced (default)", "pixel", "balanced"},   {"lines, static", "line", "static"},
     {"lines, static,1", "line", "static,1"},       {"lines, dynamic", "line", "dynamic"},
     {"lines, guided", "line", "guided"},           {"pixels, static", "pixel", "static"},
@@ -41,7 +36,7 @@ struct GroupedWay {
 };
 
 ReplayWay default_pool_way() {
-    return thread_pool_way(kDefaultPool, "pixel", "balanced", wavefront::PoolSettings::kThreadCapacity);
+    return thread_pool_way({kDefaultPool, "pixel", "balanced"});
 }
 
 std::vector<GroupedWay> all_ways() {
@@ -49,12 +44,11 @@ std::vector<GroupedWay> all_ways() {
     constexpr ReplaySchedule kStatic{Kind::Static, 0};
     constexpr ReplaySchedule kDynamic{Kind::Dynamic, 1};
     const auto shared = static_cast<std::size_t>(wavefront::PoolSettings::kSharedCapacity);
-    const std::int64_t own = wavefront::PoolSettings::kThreadCapacity;
 
     std::vector<GroupedWay> ways;
-    for (const RealWay& way : kRealWays)
+    for (const LoopWay& way : kRealWays)
         ways.push_back({way.grain == std::string("line") ? "recursion, by lines" : "recursion, by pixels and tiles",
-                        loop_way(way.name, way.grain, way.schedule)});
+                        loop_way(way)});
     const auto line_way = [&](const char* name, Kind kind) {
         ways.push_back({"recursion, by lines", {name, ReplayWay::Kind::Loop, parse_grain("line"), {kind, 0}, 0, 0}});
     };
@@ -73,10 +67,11 @@ std::vector<GroupedWay> all_ways() {
     drained("the whole image, contiguous shares", 0, 1, kStatic);
 
     ways.push_back({kThreadPools, default_pool_way()});
-    ways.push_back({kThreadPools, thread_pool_way("a pool each, lines, dynamic", "line", "dynamic", own)});
-    ways.push_back({kThreadPools, thread_pool_way("a pool each, lines, static", "line", "static", own)});
-    ways.push_back({kThreadPools, thread_pool_way("a pool each, tiles of 4, dynamic", "tile:4", "dynamic", own)});
-    ways.push_back({kThreadPools, thread_pool_way("a pool each, pixels, static,1", "pixel", "static,1", own)});
+    for (const LoopWay& way : {LoopWay{"a pool each, lines, dynamic", "line", "dynamic"},
+                               {"a pool each, lines, static", "line", "static"},
+                               {"a pool each, tiles of 4, dynamic", "tile:4", "dynamic"},
+                               {"a pool each, pixels, static,1", "pixel", "static,1"}})
+        ways.push_back({kThreadPools, thread_pool_way(way)});
     return ways;
 }
 
@@ -115,172 +110,154 @@ class Work {
     OpenMpCosts openmp_;
 };
 
-class ReplayStudy : public Study {
-  public:
-    [[nodiscard]] std::string name() const override { return "replay"; }
-    [[nodiscard]] std::string question() const override {
-        return "How well would each schedule balance this work over up to 4096 threads, and does a replay tell the "
-               "truth?";
-    }
-    [[nodiscard]] std::vector<Column> columns() const override {
-        return {
-            {"kind", ColumnType::Text, "replayed; real; openmp (what it costs); model (of a segment's time)"},
-            {"group", ColumnType::Text, "of ways, as pictures show them"},
-            {"way", ColumnType::Text, "grain and schedule, or pool"},
-            {"threads", ColumnType::Count, "replayed or real"},
-            {"efficiency_tests", ColumnType::Real, "replayed: work over the time of all threads, in tests"},
-            {"efficiency_time", ColumnType::Real, "replayed: the same in modelled seconds"},
-            {"efficiency_costs", ColumnType::Real, "replayed: the same with chunk fetches and barriers"},
-            {"efficiency_bound", ColumnType::Real, "replayed: what perfect balance reaches, in modelled seconds"},
-            {"max_over_mean", ColumnType::Real, "replayed: tests of the busiest thread over the mean"},
-            {"seconds", ColumnType::Real, "real: of the render"},
-            {"on_processor", ColumnType::Real, "real: processor time of the busiest thread over the seconds"},
-            {"speed_low", ColumnType::Real,
-             "real: speed of the slowest thread when all trace the same, beside the render, over one thread alone"},
-            {"speed_high", ColumnType::Real, "real: the same of the fastest"},
-            {"predicted", ColumnType::Real, "real: speedup over threads by a replay with these speeds"},
-            {"predicted_balance", ColumnType::Real, "real: mean over largest processor time by the same replay"},
-            {"processor_balance", ColumnType::Real, "real: mean over largest processor time of the render's threads"},
-            {"fetch_ns", ColumnType::Real, "openmp: of a chunk, to the thread that fetches it"},
-            {"barrier_ns", ColumnType::Real, "openmp: of a barrier"},
-            {"segment_ns", ColumnType::Signed, "model: recursive engine, of a segment by itself"},
-            {"test_ns", ColumnType::Signed, "model: of each box or primitive test"},
-            {"fit_error", ColumnType::Real, "model: standard deviation of lines around it, over the mean line"},
-            {"hash", ColumnType::Text, "real: of the sums of the image"}};
-    }
+std::vector<Cells> replay_all(Work& work, const StudyScene& scene, const RenderSettings& settings, int most,
+                              int repeats) {
+    std::vector<Cells> rows;
+    const PathCosts& costs = work.costs();
+    const CostFit& fit = work.fit();
+    const int renders = std::min(repeats, 3);
+    const CostModel shared = scaled_to(*canonical_pool().engine, scene, settings, costs, fit.model, renders);
+    const CostModel& own = work.pool_model();
+    const auto add_model = [&](const char* engine, const CostModel& model, const Value& error) {
+        rows.push_back({{"kind", "model"},
+                        {"way", engine},
+                        {"segment_ns", 1e9 * model.segment_s},
+                        {"test_ns", 1e9 * model.test_s},
+                        {"fit_error", error}});
+    };
+    add_model("recursion", fit.model, fit.error);
+    add_model("a pool for all threads", shared, {});
+    add_model(kThreadPools, own, {});
 
-    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
-        const auto scene = study_scene(options.scene, choose(options.width, false, 0, 400));
-        RenderSettings settings;
-        settings.end_sample = choose(options.spp, options.is_quick, 4, 16);
-        settings.depth = static_cast<std::int32_t>(choose(options.depth, false, 0, 50));
-        settings.seed = options.seed;
-        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 5, 11));
-        const int most = static_cast<int>(choose(options.threads, false, 0, kMostThreads));
-        const int real = std::min({2, core_count(), most});
-        const auto work = std::make_shared<Work>(scene, settings, repeats);
+    const OpenMpCosts& openmp = work.openmp();
+    for (std::size_t i = 0; i < openmp.threads.size(); ++i)
+        rows.push_back({{"kind", "openmp"},
+                        {"threads", openmp.threads[i]},
+                        {"fetch_ns", 1e9 * openmp.fetch_s[i]},
+                        {"barrier_ns", 1e9 * openmp.barrier_s[i]}});
 
-        std::vector<Case> cases;
-        cases.push_back({"replay", "", 1, [=, this] { return replay_all(*work, *scene, settings, most, repeats); }});
-        const auto add_real = [&](const NamedEngine& engine, const ReplayWay& way) {
-            cases.push_back({fmt::format("real, {}", way.name), image_of(*scene, settings), repeats,
-                             [=, this] { return run_real(*work, *scene, settings, *engine.engine, way, real); }});
-        };
-        for (const RealWay& way : kRealWays) {
-            settings.grain = parse_grain(way.grain);
-            settings.schedule = parse_schedule(way.schedule);
-            add_real(recursive_engine(), loop_way(way.name, way.grain, way.schedule));
-        }
-        settings.schedule = LoopSchedule{};
-        add_real(fused_pool(), default_pool_way());
-        return cases;
-    }
-
-  private:
-    std::vector<Row> replay_all(Work& work, const StudyScene& scene, const RenderSettings& settings, int most,
-                                int repeats) const {
-        std::vector<Row> rows;
-        const std::vector<Column> all = columns();
-        const PathCosts& costs = work.costs();
-        const CostFit& fit = work.fit();
-        const int renders = std::min(repeats, 3);
-        const CostModel shared = scaled_to(*canonical_pool().engine, scene, settings, costs, fit.model, renders);
-        const CostModel& own = work.pool_model();
-        const auto add_model = [&](const char* engine, const CostModel& model, const Value& error) {
-            rows.push_back(sparse_row(all, {{"kind", "model"},
-                                            {"way", engine},
-                                            {"segment_ns", 1e9 * model.segment_s},
-                                            {"test_ns", 1e9 * model.test_s},
-                                            {"fit_error", error}}));
-        };
-        add_model("recursion", fit.model, fit.error);
-        add_model("a pool for all threads", shared, {});
-        add_model(kThreadPools, own, {});
-
-        const OpenMpCosts& openmp = work.openmp();
-        for (std::size_t i = 0; i < openmp.threads.size(); ++i)
-            rows.push_back(sparse_row(all, {{"kind", "openmp"},
-                                            {"threads", openmp.threads[i]},
-                                            {"fetch_ns", 1e9 * openmp.fetch_s[i]},
-                                            {"barrier_ns", 1e9 * openmp.barrier_s[i]}}));
-
-        for (const GroupedWay& grouped : all_ways()) {  // no structured binding: clang 14 has none in parallel regions
-            const ReplayWay& way = grouped.way;
-            const PreparedWay tests = prepare(way, costs, kTests);
-            const PreparedWay time = prepare(way, costs,
-                                             way.kind == ReplayWay::Kind::Loop          ? fit.model
-                                             : way.kind == ReplayWay::Kind::ThreadPools ? own
-                                                                                        : shared);
-            const std::vector<int> replayed = thread_counts(most);
-            std::vector<Row> filled(replayed.size());
-            FirstException failure;
+    for (const GroupedWay& grouped : all_ways()) {  // no structured binding: clang 14 has none in parallel regions
+        const ReplayWay& way = grouped.way;
+        const PreparedWay tests = prepare(way, costs, kTests);
+        const PreparedWay time = prepare(way, costs,
+                                         way.kind == ReplayWay::Kind::Loop          ? fit.model
+                                         : way.kind == ReplayWay::Kind::ThreadPools ? own
+                                                                                    : shared);
+        const std::vector<int> replayed = thread_counts(most);
+        std::vector<Cells> filled(replayed.size());
+        FirstException failure;
 #pragma omp parallel for schedule(dynamic) num_threads(core_count())
-            for (std::size_t i = 0; i < replayed.size(); ++i) {
-                failure.run([&] {
-                    const int threads = replayed[i];
-                    const Replayed counted = tests.replay(threads, {});
-                    const Replayed timed = time.replay(threads, {});
-                    filled[i] =
-                        sparse_row(all, {{"kind", "replayed"},
-                                         {"group", grouped.group},
-                                         {"way", way.name},
-                                         {"threads", threads},
-                                         {"efficiency_tests", counted.efficiency()},
-                                         {"efficiency_time", timed.efficiency()},
-                                         {"efficiency_costs", time.replay(threads, openmp.at(threads)).efficiency()},
-                                         {"efficiency_bound", timed.total() / (threads * time.bound(threads))},
-                                         {"max_over_mean", max_over_mean(counted.work)}});
-                });
-            }
-            failure.rethrow();
-            rows.insert(rows.end(), filled.begin(), filled.end());
+        for (std::size_t i = 0; i < replayed.size(); ++i) {
+            failure.run([&] {
+                const int threads = replayed[i];
+                const Replayed counted = tests.replay(threads, {}, {});
+                const Replayed timed = time.replay(threads, {}, {});
+                filled[i] = Cells{{"kind", "replayed"},
+                                  {"group", grouped.group},
+                                  {"way", way.name},
+                                  {"threads", threads},
+                                  {"efficiency_tests", counted.efficiency()},
+                                  {"efficiency_time", timed.efficiency()},
+                                  {"efficiency_costs", time.replay(threads, openmp.at(threads), {}).efficiency()},
+                                  {"efficiency_bound", timed.total() / (threads * time.bound(threads))},
+                                  {"max_over_mean", max_over_mean(counted.work)}};
+            });
         }
-        return rows;
+        failure.rethrow();
+        rows.insert(rows.end(), filled.begin(), filled.end());
     }
+    return rows;
+}
 
-    /// One thread and more; beside them, how fast each thread is when all do the same; and what a replay with threads
-    /// of these speeds makes of it.
-    std::vector<Row> run_real(Work& work, const StudyScene& scene, RenderSettings settings, const Engine& engine,
-                              const ReplayWay& way, int threads) const {
-        const bool is_pool = way.kind == ReplayWay::Kind::ThreadPools;
-        const PreparedWay prepared = prepare(way, work.costs(), is_pool ? work.pool_model() : work.fit().model);
-        const double alone = equal_work_seconds(scene, settings, 1)[0];
-        const double one = prepared.replay(1, work.openmp().at(1)).makespan;
+/// One thread and more; beside them, how fast each thread is when all do the same; and what a replay with threads
+/// of these speeds makes of it.
+std::vector<Cells> run_real(Work& work, const StudyScene& scene, RenderSettings settings, const Engine& engine,
+                            const ReplayWay& way, int threads) {
+    const bool is_pool = way.kind == ReplayWay::Kind::ThreadPools;
+    const PreparedWay prepared = prepare(way, work.costs(), is_pool ? work.pool_model() : work.fit().model);
+    const double alone = equal_work_seconds(scene, settings, 1)[0];
+    const double one = prepared.replay(1, work.openmp().at(1), {}).makespan;
 
-        std::vector<Row> rows;
-        for (const int n : {1, threads}) {
-            if (n == 1 && !rows.empty()) break;  // there is one core only
-            std::vector<double> speeds = equal_work_seconds(scene, settings, n);
-            for (double& speed : speeds) speed = alone / speed;
-            const Replayed replayed = prepared.replay(n, work.openmp().at(n), speeds);
-            std::vector<double> busy = replayed.work;
-            for (std::size_t i = 0; i < busy.size(); ++i) busy[i] /= speeds[i];
+    std::vector<Cells> rows;
+    for (const int n : {1, threads}) {
+        if (n == 1 && !rows.empty()) break;  // there is one core only
+        std::vector<double> speeds = equal_work_seconds(scene, settings, n);
+        for (double& speed : speeds) speed = alone / speed;
+        const Replayed replayed = prepared.replay(n, work.openmp().at(n), speeds);
+        std::vector<double> busy = replayed.work;
+        for (std::size_t i = 0; i < busy.size(); ++i) busy[i] /= speeds[i];
 
-            settings.threads = n;
-            const Measured measured = measure(engine, scene, settings);
-            const RenderReport& report = measured.report;
-            const std::vector<double> processor = by_thread(report, &ThreadReport::processor_s);
-            rows.push_back(sparse_row(
-                columns(), {{"kind", "real"},
-                            {"way", way.name},
-                            {"threads", n},
-                            {"seconds", report.seconds},
-                            {"processor_balance", 1 / max_over_mean(processor)},
-                            {"on_processor", *std::max_element(processor.begin(), processor.end()) / report.seconds},
-                            {"speed_low", *std::min_element(speeds.begin(), speeds.end())},
-                            {"speed_high", *std::max_element(speeds.begin(), speeds.end())},
-                            {"predicted", one / (n * replayed.makespan)},
-                            {"predicted_balance", 1 / max_over_mean(busy)},
-                            {"hash", measured.hash}}));
-        }
-        return rows;
+        settings.threads = n;
+        const Measured measured = measure(engine, scene, settings);
+        const RenderReport& report = measured.report;
+        const std::vector<double> processor = by_thread(report, &ThreadReport::processor_s);
+        rows.push_back({{"kind", "real"},
+                        {"way", way.name},
+                        {"threads", n},
+                        {"seconds", report.seconds},
+                        {"processor_balance", 1 / max_over_mean(processor)},
+                        {"on_processor", *std::max_element(processor.begin(), processor.end()) / report.seconds},
+                        {"speed_low", *std::min_element(speeds.begin(), speeds.end())},
+                        {"speed_high", *std::max_element(speeds.begin(), speeds.end())},
+                        {"predicted", one / (n * replayed.makespan)},
+                        {"predicted_balance", 1 / max_over_mean(busy)},
+                        {"hash", measured.hash}});
     }
-};
+    return rows;
+}
+
+std::vector<Case> replay_cases(const StudyOptions& options) {
+    const auto scene = study_scene(options.scene, choose(options, options.width, {400, 400}));
+    const Plan plan = plan_of(options, {4, 16}, {5, 11}, kMostThreads);
+    const RenderSettings& settings = plan.settings;
+    const int real = std::min({2, core_count(), plan.most_threads});
+    const auto work = std::make_shared<Work>(scene, settings, plan.repeats);
+
+    std::vector<Case> cases;
+    cases.push_back(
+        {"replay", "", 1, [=] { return replay_all(*work, *scene, plan.settings, plan.most_threads, plan.repeats); }});
+    const auto add_real = [&](const NamedEngine& engine, const ReplayWay& way, const RenderSettings& of_way) {
+        cases.push_back({fmt::format("real, {}", way.name), image_of(*scene, settings), plan.repeats,
+                         [=] { return run_real(*work, *scene, of_way, *engine.engine, way, real); }});
+    };
+    for (const LoopWay& way : kRealWays) add_real(recursive_engine(), loop_way(way), with_way(settings, way));
+    add_real(fused_pool(), default_pool_way(), settings);
+    return cases;
+}
 
 }  // namespace
 
-std::unique_ptr<Study> replay_study() {
-    return std::make_unique<ReplayStudy>();
+Study replay_study() {
+    return {
+        .name = "replay",
+        .question =
+            "How well would each schedule balance this work over up to 4096 threads, and does a replay "
+            "tell the truth?",
+        .columns =
+            {{"kind", ColumnType::Text, "replayed; real; openmp (what it costs); model (of a segment's time)"},
+             {"group", ColumnType::Text, "of ways, as pictures show them"},
+             {"way", ColumnType::Text, "grain and schedule, or pool"},
+             {"threads", ColumnType::Count, "replayed or real"},
+             {"efficiency_tests", ColumnType::Real, "replayed: work over the time of all threads, in tests"},
+             {"efficiency_time", ColumnType::Real, "replayed: the same in modelled seconds"},
+             {"efficiency_costs", ColumnType::Real, "replayed: the same with chunk fetches and barriers"},
+             {"efficiency_bound", ColumnType::Real, "replayed: what perfect balance reaches, in modelled seconds"},
+             {"max_over_mean", ColumnType::Real, "replayed: tests of the busiest thread over the mean"},
+             {"seconds", ColumnType::Real, "real: of the render"},
+             {"on_processor", ColumnType::Real, "real: processor time of the busiest thread over the seconds"},
+             {"speed_low", ColumnType::Real,
+              "real: speed of the slowest thread when all trace the same, beside the render, over one thread alone"},
+             {"speed_high", ColumnType::Real, "real: the same of the fastest"},
+             {"predicted", ColumnType::Real, "real: speedup over threads by a replay with these speeds"},
+             {"predicted_balance", ColumnType::Real, "real: mean over largest processor time by the same replay"},
+             {"processor_balance", ColumnType::Real, "real: mean over largest processor time of the render's threads"},
+             {"fetch_ns", ColumnType::Real, "openmp: of a chunk, to the thread that fetches it"},
+             {"barrier_ns", ColumnType::Real, "openmp: of a barrier"},
+             {"segment_ns", ColumnType::Signed, "model: recursive engine, of a segment by itself"},
+             {"test_ns", ColumnType::Signed, "model: of each box or primitive test"},
+             {"fit_error", ColumnType::Real, "model: standard deviation of lines around it, over the mean line"},
+             {"hash", ColumnType::Text, "real: of the sums of the image"}},
+        .cases = replay_cases};
 }
 
 }  // namespace raypool::studies

@@ -89,6 +89,9 @@ struct PoolItems {
     std::vector<std::size_t> most_held;     ///< by item
 };
 
+/// What each item costs.
+std::vector<double> item_costs(const SegmentCosts& segments, const PoolItems& items);
+
 /// A pool for each thread, refilled as soon as there is room: a thread fetches the next item while its pool has room,
 /// and then takes every path of the pool through a segment. So many paths are in threads' hands before anybody knows
 /// what they cost. `speeds` as in replay().

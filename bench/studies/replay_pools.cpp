@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "bench/studies/replay_clocks.h"
@@ -63,14 +64,19 @@ class PathPool {
 
 }  // namespace
 
+std::vector<double> item_costs(const SegmentCosts& segments, const PoolItems& items) {
+    std::vector<double> costs(items.most_held.size());
+    const auto segment_of = [&](std::size_t item) {
+        return segments.cost.begin() + segments.first[items.first_path[item]];
+    };
+    for (std::size_t i = 0; i < costs.size(); ++i) costs[i] = std::accumulate(segment_of(i), segment_of(i + 1), 0.0);
+    return costs;
+}
+
 Replayed replay_thread_pools(const SegmentCosts& segments, const PoolItems& items, const ReplaySchedule& schedule,
                              int threads, const ReplayCosts& costs, std::span<const double> speeds) {
     const std::size_t item_count = items.most_held.size();
-    std::vector<double> item_costs(item_count);
-    for (std::size_t i = 0; i < item_count; ++i)
-        for (std::uint32_t s = segments.first[items.first_path[i]]; s < segments.first[items.first_path[i + 1]]; ++s)
-            item_costs[i] += segments.cost[s];
-    const std::vector<std::int32_t> order = order_of(item_costs, schedule);
+    const std::vector<std::int32_t> order = order_of(item_costs(segments, items), schedule);
 
     Dispenser dispenser(static_cast<std::int64_t>(item_count), schedule, threads);
     std::vector<PathPool> pools(static_cast<std::size_t>(threads), PathPool(segments));

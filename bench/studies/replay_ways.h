@@ -5,14 +5,11 @@
 #include <functional>
 #include <span>
 #include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "bench/studies/path_costs.h"
 #include "bench/studies/replay_model.h"
-#include "bench/studies/table.h"
 #include "core/runtime/settings_text.h"
+#include "wavefront/settings.h"
 
 namespace raypool::studies {
 
@@ -39,35 +36,24 @@ inline ReplaySchedule to_replay(const LoopSchedule& schedule) {
     return {kKinds[static_cast<int>(schedule.kind)], schedule.chunk};
 }
 
-/// A way of the real engines, by the texts that users write.
-inline ReplayWay loop_way(std::string name, std::string_view grain, std::string_view schedule) {
-    return {std::move(name), ReplayWay::Kind::Loop, parse_grain(grain), to_replay(parse_schedule(schedule)), 0, 0};
+/// A way of the real engines.
+inline ReplayWay loop_way(const LoopWay& way) {
+    return {way.name, ReplayWay::Kind::Loop, parse_grain(way.grain), to_replay(parse_schedule(way.schedule)), 0, 0};
 }
-inline ReplayWay thread_pool_way(std::string name, std::string_view grain, std::string_view schedule,
-                                 std::int64_t capacity) {
-    return {std::move(name),
-            ReplayWay::Kind::ThreadPools,
-            parse_grain(grain),
-            to_replay(parse_schedule(schedule)),
-            static_cast<std::size_t>(capacity),
-            0};
+inline ReplayWay thread_pool_way(const LoopWay& way) {
+    ReplayWay pools = loop_way(way);
+    pools.kind = ReplayWay::Kind::ThreadPools;
+    pools.capacity = static_cast<std::size_t>(wavefront::PoolSettings::kThreadCapacity);
+    return pools;
 }
 
 /// A way with everything about the work prepared, so that thread counts are cheap.
 struct PreparedWay {
-    using Speeds = std::span<const double>;
-    std::function<Replayed(int threads, const ReplayCosts& costs, Speeds speeds)> run;
-    std::function<double(int threads)> bound;  ///< the shortest makespan
-
     /// The speeds as in raypool::studies::replay(); rounds know none.
-    [[nodiscard]] Replayed replay(int threads, const ReplayCosts& costs, Speeds speeds = {}) const {
-        return run(threads, costs, speeds);
-    }
+    std::function<Replayed(int threads, const ReplayCosts& costs, std::span<const double> speeds)> replay;
+    std::function<double(int threads)> bound;  ///< the shortest makespan
 };
 /// The costs outlive it.
 PreparedWay prepare(const ReplayWay& way, const PathCosts& costs, const CostModel& model);
-
-/// A row in which the columns named have values, and all others none.
-Row sparse_row(const std::vector<Column>& columns, const std::vector<std::pair<std::string_view, Value>>& values);
 
 }  // namespace raypool::studies

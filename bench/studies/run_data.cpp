@@ -41,9 +41,10 @@ void RunData::open() {
     if (file_ < 0) fail(errno);
 }
 
-void RunData::add(const Case& c, int repeat, std::vector<Row> rows) {
-    for (Row& row : rows) {
-        row.insert(row.begin(), {c.id, repeat});
+void RunData::add(const Case& c, int repeat, const std::vector<Cells>& added) {
+    std::vector<Row> rows;
+    for (const Cells& cells : added) {
+        const Row& row = rows.emplace_back(row_of(table_.columns(), Cells{{"case", c.id}, {"repeat", repeat}} + cells));
         for (std::size_t i = 0; i < row.size(); ++i)
             if (const Column& column = table_.columns()[i]; !fault(row[i], column.type).empty())
                 throw std::logic_error(

@@ -40,7 +40,7 @@ class RunData {
     [[nodiscard]] const Table& table() const { return table_; }
 
     /// The rows of one repeat of a case, all of them or, where that fails, none. Throws WrongImage.
-    void add(const Case& c, int repeat, std::vector<Row> rows);
+    void add(const Case& c, int repeat, const std::vector<Cells>& rows);
 
   private:
     struct Plan {

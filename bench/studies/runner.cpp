@@ -51,8 +51,8 @@ json identity(const Study& study, const StudyOptions& options, const std::vector
     if (options.is_scene_given) asked["scene_given"] = true;
     json described = json::array();
     for (const Column& column : columns) described.push_back({{"name", column.name}, {"what", column.what}});
-    return {{"study", study.name()}, {"question", study.question()}, {"options", asked},
-            {"plan", plan},          {"columns", described},         {"environment", environment_json()}};
+    return {{"study", study.name}, {"question", study.question}, {"options", asked},
+            {"plan", plan},        {"columns", described},       {"environment", environment_json()}};
 }
 
 void check_same(const json& found, const json& wanted, const std::string& key, const fs::path& folder) {
@@ -64,8 +64,7 @@ void check_same(const json& found, const json& wanted, const std::string& key, c
 std::vector<Column> all_columns(const Study& study) {
     std::vector<Column> columns{{"case", ColumnType::Text, "what was run"},
                                 {"repeat", ColumnType::Count, "which time; repeats of one number ran side by side"}};
-    const std::vector<Column> own = study.columns();
-    columns.insert(columns.end(), own.begin(), own.end());
+    columns.insert(columns.end(), study.columns.begin(), study.columns.end());
     return columns;
 }
 
@@ -154,7 +153,7 @@ bool run_study(const Study& study, const StudyOptions& options, const fs::path& 
         run["stolen"] = (after.stolen - before.stolen) / std::max(1.0, after.all - before.all);
     }
     if (!run.contains("facts")) run["facts"] = study.facts();
-    study.write_images(folder, options);
+    if (study.write_images) study.write_images(folder, options);
     write_json(folder / "run.json", run);
     return true;
 }

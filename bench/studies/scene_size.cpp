@@ -7,12 +7,12 @@
 
 #include "bench/studies/cache_counts.h"
 #include "bench/studies/generated_scene.h"
+#include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/studies.h"
+#include "bench/studies/statistics.h"
 #include "core/runtime/settings_text.h"
 #include "core/scene/scene_reader.h"
 #include "wavefront/capacity.h"
-#include "wavefront/engine.h"
 
 namespace raypool::studies {
 
@@ -61,44 +61,32 @@ struct SizedWay {
 };
 
 NamedEngine sized_engine(const SizedWay& way) {
-    if (!way.pool) return recursive_engine();
-    return {"pool", std::make_shared<wavefront::WavefrontEngine>(*way.pool)};
+    return way.pool ? pool_engine("pool", *way.pool) : recursive_engine();
 }
 
-/// What a row of counts says beside its render, all of it null where it was not counted: reads that missed the
-/// first-level and the last-level cache; lists of one level of the trees.
-struct Counted {
-    Value source = nullptr;
-    Value d1_read_misses = nullptr;
-    Value ll_read_misses = nullptr;
-    Value level = nullptr;
-    ListLevel lists = {};
-};
+Measured measure(const SizedWay& way, SizedScene& scene, const RenderSettings& settings) {
+    return measure(*sized_engine(way).engine, scene.get(), settings);
+}
 
-Row sized_row(const std::string& name, const SizedWay& way, SizedScene& scene, const RenderSettings& settings,
-              const Measured& measured, const Counted& counted = {}) {
-    const NamedEngine engine = sized_engine(way);
+/// What every row says; `way_text` begins with what was counted, if anything was.
+Cells sized_cells(const std::string& way_text, const SizedWay& way, SizedScene& scene, const RenderSettings& settings,
+                  const Measured& measured) {
     const RenderReport& report = measured.report;
-    const auto of_level = [&](std::int64_t count) { return counted.level.is_null() ? Value() : Value(count); };
-    Row row = render_row(engine.name, *engine.engine, scene.get(), settings, measured);
-    const Row more{scene.kind(),
-                   scene.shapes(),
-                   settings.depth,
-                   name,
-                   way.pool ? Value(report.pool_rays) : Value(),
-                   wavefront::tree_bytes(scene.get().compiled),
-                   report.segments(),
-                   1e9 * report.seconds * settings.threads / static_cast<double>(report.segments()),
-                   counted.source,
-                   counted.d1_read_misses,
-                   counted.ll_read_misses,
-                   counted.level,
-                   of_level(counted.lists.lists),
-                   of_level(counted.lists.rays),
-                   of_level(counted.lists.single_rays),
-                   of_level(counted.lists.lanes)};
-    row.insert(row.end(), more.begin(), more.end());
-    return row;
+    return render_cells(sized_engine(way), scene.get(), settings, measured) +
+           Cells{{"kind", scene.kind()},
+                 {"shapes", scene.shapes()},
+                 {"depth", settings.depth},
+                 {"way", way_text},
+                 {"capacity", way.pool ? Value(report.pool_rays) : Value()},
+                 {"tree_bytes", wavefront::tree_bytes(scene.get().compiled)},
+                 {"segments", report.segments()},
+                 {"ns_per_segment", ns_per_segment(report, settings.threads)}};
+}
+/// The row's time is not used: counting takes some.
+Cells miss_cells(const SizedWay& way, SizedScene& scene, const RenderSettings& settings, const Measured& measured,
+                 const char* source, const Value& d1_read_misses, const Value& ll_read_misses) {
+    return sized_cells(fmt::format("{}, {}", kCounted, way.name), way, scene, settings, measured) +
+           Cells{{"source", source}, {"d1_read_misses", d1_read_misses}, {"ll_read_misses", ll_read_misses}};
 }
 
 std::string case_id(const SizedScene& scene, const RenderSettings& settings, const std::string& what) {
@@ -107,26 +95,21 @@ std::string case_id(const SizedScene& scene, const RenderSettings& settings, con
 
 Case sized_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, const RenderSettings& settings,
                 int repeats) {
-    const auto run = [way, scene, settings]() -> std::vector<Row> {
-        const StudyScene& made = scene->get();
-        return {sized_row(way.name, way, *scene, settings, measure(*sized_engine(way).engine, made, settings))};
+    const auto run = [way, scene, settings]() -> std::vector<Cells> {
+        return {sized_cells(way.name, way, *scene, settings, measure(way, *scene, settings))};
     };
     return {case_id(*scene, settings, fmt::format("{}, {} threads", way.name, settings.threads)),
             scene->image(settings), repeats, run};
 }
 
-/// Its time is not used, here and below: counting takes some.
 Case hardware_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, const RenderSettings& settings) {
-    const auto run = [way, scene, settings]() -> std::vector<Row> {
-        const StudyScene& made = scene->get();
+    const auto run = [way, scene, settings]() -> std::vector<Cells> {
+        static_cast<void>(scene->get());  // made before anything is counted
         Measured measured;
-        const auto found = count_by_hardware([&] { measured = measure(*sized_engine(way).engine, made, settings); });
+        const auto found = count_by_hardware([&] { measured = measure(way, *scene, settings); });
         const CacheCounts counts = found.value_or(CacheCounts{});
-        const auto or_null = [](const std::optional<std::int64_t>& count) { return count ? Value(*count) : Value(); };
-        return {sized_row(fmt::format("{}, {}", kCounted, way.name), way, *scene, settings, measured,
-                          {.source = "hardware counters",
-                           .d1_read_misses = or_null(counts.d1_read_misses),
-                           .ll_read_misses = or_null(counts.ll_read_misses)})};
+        return {miss_cells(way, *scene, settings, measured, "hardware counters", or_null(counts.d1_read_misses),
+                           or_null(counts.ll_read_misses))};
     };
     return {case_id(*scene, settings, fmt::format("cache misses of {}", way.name)), scene->image(settings), 1, run};
 }
@@ -134,7 +117,7 @@ Case hardware_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene
 /// Misses of the samples behind the first so many, so that what is done once for a scene is in neither figure. Small
 /// images: a simulated cache is a hundred times slower.
 Case cachegrind_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, const RenderSettings& settings) {
-    const auto run = [way, scene, settings]() -> std::vector<Row> {
+    const auto run = [way, scene, settings]() -> std::vector<Cells> {
         const StudyScene& made = scene->get();
         const GeneratedScene file(scene->kind(), scene->shapes());
         const auto count = [&](std::int64_t spp) {
@@ -155,13 +138,12 @@ Case cachegrind_case(const SizedWay& way, const std::shared_ptr<SizedScene>& sce
         };
         const Cachegrind first = count(1);
         const Cachegrind all = count(settings.end_sample);
-        Measured measured = measure(*sized_engine(way).engine, made, settings);
+        Measured measured = measure(way, *scene, settings);
         if (measured.hash != all.hash) throw std::runtime_error("the image under cachegrind is another one");
         measured.report.threads.front().segments = all.segments - first.segments;
-        return {sized_row(fmt::format("{}, {}", kCounted, way.name), way, *scene, settings, measured,
-                          {.source = "cachegrind",
-                           .d1_read_misses = more(all.all.d1_read_misses, first.all.d1_read_misses),
-                           .ll_read_misses = more(all.all.ll_read_misses, first.all.ll_read_misses)})};
+        return {miss_cells(way, *scene, settings, measured, "cachegrind",
+                           more(all.all.d1_read_misses, first.all.d1_read_misses),
+                           more(all.all.ll_read_misses, first.all.ll_read_misses))};
     };
     return {case_id(*scene, settings, fmt::format("cache misses of {}", way.name)), scene->image(settings), 1, run};
 }
@@ -169,119 +151,104 @@ Case cachegrind_case(const SizedWay& way, const std::shared_ptr<SizedScene>& sce
 /// The lists of a pool, a row for each level of the trees.
 Case list_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, RenderSettings settings) {
     settings.count_work = true;
-    const auto run = [way, scene, settings]() -> std::vector<Row> {
-        const StudyScene& made = scene->get();
-        const Measured measured = measure(*sized_engine(way).engine, made, settings);
-        std::vector<Row> rows;
+    const auto run = [way, scene, settings]() -> std::vector<Cells> {
+        const Measured measured = measure(way, *scene, settings);
+        std::vector<Cells> rows;
         for (const ListLevel& level : measured.report.lists) {
             if (level.lists == 0) break;
-            rows.push_back(sized_row(fmt::format("{}, {}", kLists, way.name), way, *scene, settings, measured,
-                                     {.level = rows.size(), .lists = level}));
+            rows.push_back(sized_cells(fmt::format("{}, {}", kLists, way.name), way, *scene, settings, measured) +
+                           Cells{{"level", rows.size()},
+                                 {"lists", level.lists},
+                                 {"list_rays", level.rays},
+                                 {"single_rays", level.single_rays},
+                                 {"lanes", level.lanes}});
         }
         return rows;
     };
     return {case_id(*scene, settings, fmt::format("lists of {}", way.name)), scene->image(settings), 1, run};
 }
 
-class SceneSize : public Study {
-  public:
-    [[nodiscard]] std::string name() const override { return "scene-size"; }
-    [[nodiscard]] std::string question() const override {
-        return "At which size of scene does a pool beat recursion, and how many records must it hold?";
+std::vector<std::int64_t> sizes(bool is_quick) {
+    if (is_quick) return {100, 1000, 10'000};
+    return {100, 1000, 10'000, 100'000, 1'000'000};
+}
+std::vector<std::int64_t> depths(const StudyOptions& options) {
+    if (options.depth != 0) return {options.depth};
+    if (options.is_quick) return {50};
+    return {1, 50};
+}
+std::vector<SizedWay> sized_ways(bool is_quick) {
+    std::vector<SizedWay> ways{{kRecursion, std::nullopt}, {kAutomatic, PoolSettings{}}};
+    for (const std::int64_t capacity : {2048, 8192, 32'768, 131'072}) {
+        if (is_quick && capacity > 32'768) continue;
+        PoolSettings pool;
+        pool.capacity = capacity;
+        ways.push_back({std::to_string(capacity), pool});
     }
-    [[nodiscard]] std::vector<Column> columns() const override {
-        std::vector<Column> columns = render_columns();
-        columns.insert(
-            columns.end(),
-            {{"kind", ColumnType::Text, "what scenes/generate strewed: spheres, quads or a cluster"},
-             {"shapes", ColumnType::Count, "how many"},
-             {"depth", ColumnType::Count, "most segments of a path; 1: camera rays alone"},
-             {"way", ColumnType::Text, "recursion, a capacity, automatic; cache misses or lists of one of these"},
-             {"capacity", ColumnType::Count, "records of the pool of each thread"},
-             {"tree_bytes", ColumnType::Count, "nodes and leaves of the scene's trees"},
-             {"segments", ColumnType::Count, "rays traced"},
-             {"ns_per_segment", ColumnType::Real, "nanoseconds of a thread for a segment"},
-             {"source", ColumnType::Text, "of misses: hardware counters, or cachegrind (a simulation)"},
-             {"d1_read_misses", ColumnType::Count, "of the first-level cache, by all segments"},
-             {"ll_read_misses", ColumnType::Count, "of the last-level cache; cachegrind's is the second level"},
-             {"level", ColumnType::Count, "of the trees, the root's is 0"},
-             {"lists", ColumnType::Count, "lists of rays at nodes and leaves of the level"},
-             {"list_rays", ColumnType::Count, "rays in them"},
-             {"single_rays", ColumnType::Count, "of these, in short lists: each went on alone, in no list"},
-             {"lanes", ColumnType::Count, "of registers, for the other rays"}});
-        return columns;
-    }
+    return ways;
+}
 
-    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
-        RenderSettings settings;
-        settings.end_sample = choose(options.spp, options.is_quick, 4, 8);
-        settings.seed = options.seed;
-        settings.schedule = parse_schedule("dynamic");
-        settings.grain = parse_grain("tile:8");
-        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 3, 5));
-        const int most = static_cast<int>(choose(options.threads, options.is_quick, 1, core_count()));
-        const std::int64_t width = choose(options.width, options.is_quick, 96, 256);
-        const std::vector<SizedWay> ways = all_ways(options.is_quick);
-        const bool has_counters = count_by_hardware([] {}).has_value();
-        const bool has_cachegrind = !has_counters && !options.is_quick && cachegrind_command().why.empty();
+std::vector<Case> scene_size_cases(const StudyOptions& options) {
+    constexpr std::int64_t kMostSimulated = 100'000;  // shapes
+    constexpr std::int64_t kSimulatedWidth = 96;
+    constexpr std::int64_t kSimulatedSpp = 5;
+    const Plan plan = plan_of(options, {4, 8}, {3, 5}, options.is_quick ? 1 : core_count());
+    RenderSettings settings = with_way(plan.settings, {"", "tile:8", "dynamic"});
+    const std::int64_t width = choose(options, options.width, {96, 256});
+    const std::vector<SizedWay> ways = sized_ways(options.is_quick);
+    const bool has_counters = count_by_hardware([] {}).has_value();
+    const bool has_cachegrind = !has_counters && !options.is_quick && cachegrind_command().why.empty();
 
-        std::vector<Case> cases;
-        for (const char* kind : kSceneKinds) {
-            for (const std::int64_t shapes : sizes(options.is_quick)) {
-                const auto scene = std::make_shared<SizedScene>(kind, shapes, width);
-                for (const std::int64_t depth : depths(options)) {
-                    settings.depth = static_cast<std::int32_t>(depth);
-                    for (const int threads : one_and_all(most)) {
-                        settings.threads = threads;
-                        for (const SizedWay& way : ways) cases.push_back(sized_case(way, scene, settings, repeats));
-                    }
-                    settings.threads = 1;
-                    for (const SizedWay& way : ways) {
-                        if (has_counters) cases.push_back(hardware_case(way, scene, settings));
-                        // Camera rays go down in beams, and are in no list.
-                        if (way.pool && depth > 1) cases.push_back(list_case(way, scene, settings));
-                    }
+    std::vector<Case> cases;
+    for (const char* kind : kSceneKinds) {
+        for (const std::int64_t shapes : sizes(options.is_quick)) {
+            const auto scene = std::make_shared<SizedScene>(kind, shapes, width);
+            for (const std::int64_t depth : depths(options)) {
+                settings.depth = static_cast<std::int32_t>(depth);
+                for (const int threads : one_and_all(plan.most_threads)) {
+                    settings.threads = threads;
+                    for (const SizedWay& way : ways) cases.push_back(sized_case(way, scene, settings, plan.repeats));
                 }
-                if (!has_cachegrind || shapes > kMostSimulated) continue;
-                const auto small = std::make_shared<SizedScene>(kind, shapes, std::min(width, kSimulatedWidth));
-                RenderSettings few = settings;
-                few.end_sample = kSimulatedSpp;
-                for (const SizedWay& way : {ways[0], ways[1]}) cases.push_back(cachegrind_case(way, small, few));
+                settings.threads = 1;
+                for (const SizedWay& way : ways) {
+                    if (has_counters) cases.push_back(hardware_case(way, scene, settings));
+                    // Camera rays go down in beams, and are in no list.
+                    if (way.pool && depth > 1) cases.push_back(list_case(way, scene, settings));
+                }
             }
+            if (!has_cachegrind || shapes > kMostSimulated) continue;
+            const auto small = std::make_shared<SizedScene>(kind, shapes, std::min(width, kSimulatedWidth));
+            RenderSettings few = settings;
+            few.end_sample = kSimulatedSpp;
+            for (const SizedWay& way : {ways[0], ways[1]}) cases.push_back(cachegrind_case(way, small, few));
         }
-        return cases;
     }
-
-  private:
-    static constexpr std::int64_t kMostSimulated = 100'000;  ///< shapes
-    static constexpr std::int64_t kSimulatedWidth = 96;
-    static constexpr std::int64_t kSimulatedSpp = 5;
-
-    static std::vector<std::int64_t> sizes(bool is_quick) {
-        if (is_quick) return {100, 1000, 10'000};
-        return {100, 1000, 10'000, 100'000, 1'000'000};
-    }
-    static std::vector<std::int64_t> depths(const StudyOptions& options) {
-        if (options.depth != 0) return {options.depth};
-        if (options.is_quick) return {50};
-        return {1, 50};
-    }
-    static std::vector<SizedWay> all_ways(bool is_quick) {
-        std::vector<SizedWay> ways{{kRecursion, std::nullopt}, {kAutomatic, PoolSettings{}}};
-        for (const std::int64_t capacity : {2048, 8192, 32'768, 131'072}) {
-            if (is_quick && capacity > 32'768) continue;
-            PoolSettings pool;
-            pool.capacity = capacity;
-            ways.push_back({std::to_string(capacity), pool});
-        }
-        return ways;
-    }
-};
+    return cases;
+}
 
 }  // namespace
 
-std::unique_ptr<Study> scene_size_study() {
-    return std::make_unique<SceneSize>();
+Study scene_size_study() {
+    return {.name = "scene-size",
+            .question = "At which size of scene does a pool beat recursion, and how many records must it hold?",
+            .columns = render_columns(
+                {{"kind", ColumnType::Text, "what scenes/generate strewed: spheres, quads or a cluster"},
+                 {"shapes", ColumnType::Count, "how many"},
+                 {"depth", ColumnType::Count, "most segments of a path; 1: camera rays alone"},
+                 {"way", ColumnType::Text, "recursion, a capacity, automatic; cache misses or lists of one of these"},
+                 {"capacity", ColumnType::Count, "records of the pool of each thread"},
+                 {"tree_bytes", ColumnType::Count, "nodes and leaves of the scene's trees"},
+                 {"segments", ColumnType::Count, "rays traced"},
+                 {"ns_per_segment", ColumnType::Real, "nanoseconds of a thread for a segment"},
+                 {"source", ColumnType::Text, "of misses: hardware counters, or cachegrind (a simulation)"},
+                 {"d1_read_misses", ColumnType::Count, "of the first-level cache, by all segments"},
+                 {"ll_read_misses", ColumnType::Count, "of the last-level cache; cachegrind's is the second level"},
+                 {"level", ColumnType::Count, "of the trees, the root's is 0"},
+                 {"lists", ColumnType::Count, "lists of rays at nodes and leaves of the level"},
+                 {"list_rays", ColumnType::Count, "rays in them"},
+                 {"single_rays", ColumnType::Count, "of these, in short lists: each went on alone, in no list"},
+                 {"lanes", ColumnType::Count, "of registers, for the other rays"}}),
+            .cases = scene_size_cases};
 }
 
 }  // namespace raypool::studies

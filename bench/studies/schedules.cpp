@@ -2,21 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
-#include "bench/studies/studies.h"
-#include "core/runtime/settings_text.h"
 
 namespace raypool::studies {
 
 namespace {
 
-/// A way of handing out the image.
-struct Way {
-    const char* name;
-    const char* grain;
-    const char* schedule;
-};
-constexpr Way kWays[] = {
+constexpr LoopWay kWays[] = {
     {"lines, static (the paper's basic)", "line", "static"},
     {"balanced (default)", "pixel", "balanced"},
     {"lines, tasks,1", "line", "tasks,1"},
@@ -29,47 +22,28 @@ constexpr Way kWays[] = {
     {"tiles of 16, dynamic", "tile:16", "dynamic"},
 };
 
-class Schedules : public Study {
-  public:
-    [[nodiscard]] std::string name() const override { return "schedules"; }
-    [[nodiscard]] std::string question() const override {
-        return "How much time does each way of handing out the image take, by recursion and by pools?";
-    }
-    [[nodiscard]] std::vector<Column> columns() const override {
-        std::vector<Column> columns = render_columns();
-        columns.push_back({"way", ColumnType::Text, "grain and schedule, as the pictures name them"});
-        return columns;
-    }
-
-    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
-        const auto scene = study_scene(options.scene, choose(options.width, options.is_quick, 160, 400));
-        RenderSettings settings;
-        settings.end_sample = choose(options.spp, options.is_quick, 8, 40);
-        settings.depth = static_cast<std::int32_t>(choose(options.depth, options.is_quick, 50, 50));
-        settings.seed = options.seed;
-        const int repeats = static_cast<int>(choose(options.repeats, options.is_quick, 5, 7));
-        const int most = static_cast<int>(choose(options.threads, false, 0, core_count()));
-
-        std::vector<Case> cases;
-        for (const NamedEngine& engine : {recursive_engine(), fused_pool()}) {
-            for (const int threads : thread_counts(most)) {
-                for (const Way& way : kWays) {
-                    settings.threads = threads;
-                    settings.grain = parse_grain(way.grain);
-                    settings.schedule = parse_schedule(way.schedule);
-                    cases.push_back(render_case(fmt::format("{}, {} threads, {}", engine.name, threads, way.name),
-                                                engine, scene, settings, repeats, {way.name}));
-                }
-            }
+std::vector<Case> cases(const StudyOptions& options) {
+    const auto scene = study_scene(options.scene, choose(options, options.width, {160, 400}));
+    Plan plan = plan_of(options, {8, 40}, {5, 7}, core_count());
+    std::vector<Case> cases;
+    for (const NamedEngine& engine : {recursive_engine(), fused_pool()}) {
+        for (const int threads : thread_counts(plan.most_threads)) {
+            plan.settings.threads = threads;
+            for (const LoopWay& way : kWays)
+                cases.push_back(render_case(fmt::format("{}, {} threads, {}", engine.name, threads, way.name), engine,
+                                            scene, with_way(plan.settings, way), plan.repeats, {{"way", way.name}}));
         }
-        return cases;
     }
-};
+    return cases;
+}
 
 }  // namespace
 
-std::unique_ptr<Study> schedules_study() {
-    return std::make_unique<Schedules>();
+Study schedules_study() {
+    return {.name = "schedules",
+            .question = "How much time does each way of handing out the image take, by recursion and by pools?",
+            .columns = render_columns({{"way", ColumnType::Text, "grain and schedule, as the pictures name them"}}),
+            .cases = cases};
 }
 
 }  // namespace raypool::studies

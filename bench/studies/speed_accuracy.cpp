@@ -8,9 +8,9 @@
 
 #include "bench/accuracy/configuration.h"
 #include "bench/accuracy/reference.h"
+#include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/runner.h"
-#include "bench/studies/studies.h"
 #include "core/runtime/settings_text.h"
 #include "core/scene/scene_reader.h"
 
@@ -70,28 +70,24 @@ using SharedScene = std::shared_ptr<const accuracy::SceneInBoth>;
 /// Samples for each pixel in a pair of images of which the bias is taken, and the number of pairs.
 constexpr int kBiasPairs = 8;
 
-/// What every row begins with, behind "case" and "repeat".
-Row start_of_row(const char* kind, const accuracy::SceneInBoth& scene, const Configuration& c, int threads,
-                 std::int64_t spp) {
-    return {kind,
-            scene.description.name,
-            to_string(c),
-            c.engine == EngineKind::Pool ? "pool" : "recursion",
-            c.precision == Precision::Float ? "float" : "double",
-            c.sampler == Sampler::Sobol ? "Sobol" : "independent",
-            c.roulette ? "on" : "off",
-            c.depth,
-            c.split_depth,
-            threads,
-            scene.in_float.width,
-            spp};
-}
-Row extended(Row row, const Row& more) {
-    row.insert(row.end(), more.begin(), more.end());
-    return row;
+/// What every row says.
+Cells start_of_row(const char* kind, const accuracy::SceneInBoth& scene, const Configuration& c, int threads,
+                   std::int64_t spp) {
+    return {{"kind", kind},
+            {"scene", scene.description.name},
+            {"configuration", to_string(c)},
+            {"engine", c.engine == EngineKind::Pool ? "pool" : "recursion"},
+            {"precision", c.precision == Precision::Float ? "float" : "double"},
+            {"sampler", c.sampler == Sampler::Sobol ? "Sobol" : "independent"},
+            {"roulette", c.roulette ? "on" : "off"},
+            {"depth", c.depth},
+            {"split", c.split_depth},
+            {"threads", threads},
+            {"width", scene.in_float.width},
+            {"spp", spp}};
 }
 
-struct Plan {
+struct AccuracyPlan {
     std::vector<std::int64_t> spps;
     int seeds = 0;
     std::uint64_t first_seed = 0;
@@ -101,15 +97,15 @@ struct Plan {
     [[nodiscard]] std::int64_t half_spp() const { return 32 * spps.back(); }
 };
 
-Plan plan_of(const StudyOptions& options) {
-    Plan plan;
-    const std::int64_t most = choose(options.spp, options.is_quick, 64, 256);
+AccuracyPlan accuracy_plan(const StudyOptions& options) {
+    AccuracyPlan plan;
+    const std::int64_t most = choose(options, options.spp, {64, 256});
     for (std::int64_t spp = 1; spp < most; spp *= 4) plan.spps.push_back(spp);
     plan.spps.push_back(most);
-    plan.seeds = static_cast<int>(choose(options.repeats, options.is_quick, 5, 10));
+    plan.seeds = static_cast<int>(choose(options, options.repeats, {5, 10}));
     plan.first_seed = options.seed;
-    plan.threads = static_cast<int>(choose(options.threads, false, 0, 1));
-    plan.all_threads = static_cast<int>(choose(options.threads, false, 0, core_count()));
+    plan.threads = options.threads != 0 ? options.threads : 1;
+    plan.all_threads = options.threads != 0 ? options.threads : core_count();
     return plan;
 }
 
@@ -119,27 +115,26 @@ std::vector<SharedScene> scenes_of(const StudyOptions& options) {
     std::vector<SharedScene> scenes;
     for (const std::string& name : names) {
         Scene scene = load_scene(name);
-        set_width(scene, choose(options.width, options.is_quick, 64, 112));
+        set_width(scene, choose(options, options.width, {64, 112}));
         scenes.push_back(std::make_shared<const accuracy::SceneInBoth>(scene));
     }
     return scenes;
 }
 
 /// A part of the reference, so that an interruption loses little.
-Case reference_case(const SharedScene& scene, const std::shared_ptr<accuracy::Reference>& reference, const Plan& plan,
-                    std::int64_t range, std::int64_t number) {
-    const auto run = [=]() -> std::vector<Row> {
+Case reference_case(const SharedScene& scene, const std::shared_ptr<accuracy::Reference>& reference,
+                    const AccuracyPlan& plan, std::int64_t range, std::int64_t number) {
+    const auto run = [=]() -> std::vector<Cells> {
         reference->extend(range);
-        return {
-            extended(start_of_row(kReference, *scene, accuracy::kTrusted, plan.all_threads, range), Row(8, nullptr))};
+        return {start_of_row(kReference, *scene, accuracy::kTrusted, plan.all_threads, range)};
     };
     return {fmt::format("reference: {}, part {}", scene->description.name, number), "", 1, run};
 }
 
 /// One row for each configuration that makes another image: its expectation against the trusted one, by pairs of images
 /// made from the same random numbers, whose common noise goes away in their difference.
-Case bias_case(const SharedScene& scene, const std::vector<Configuration>& all, const Plan& plan) {
-    const auto run = [=]() -> std::vector<Row> {
+Case bias_case(const SharedScene& scene, const std::vector<Configuration>& all, const AccuracyPlan& plan) {
+    const auto run = [=]() -> std::vector<Cells> {
         const std::int64_t spp = plan.spps.back();
         const auto image = [&](const Configuration& c, int pair) {
             const std::uint64_t seed = plan.first_seed + static_cast<std::uint64_t>(pair);
@@ -147,7 +142,7 @@ Case bias_case(const SharedScene& scene, const std::vector<Configuration>& all, 
         };
         std::vector<accuracy::Values> trusted;
         for (int pair = 0; pair < kBiasPairs; ++pair) trusted.push_back(image(accuracy::kTrusted, pair));
-        std::vector<Row> rows;
+        std::vector<Cells> rows;
         for (const Configuration& c : all) {
             if (c.engine != EngineKind::Pool) continue;  // the engine does not show in the image
             std::vector<accuracy::Values> differences;
@@ -157,8 +152,8 @@ Case bias_case(const SharedScene& scene, const std::vector<Configuration>& all, 
                     differences.back()[i] -= trusted[static_cast<std::size_t>(pair)][i];
             }
             const accuracy::Estimate bias = accuracy::mean_squared_expectation(differences);
-            rows.push_back(extended(start_of_row(kBias, *scene, c, plan.all_threads, spp),
-                                    {nullptr, nullptr, nullptr, nullptr, nullptr, bias.value, bias.error, nullptr}));
+            rows.push_back(start_of_row(kBias, *scene, c, plan.all_threads, spp) +
+                           Cells{{"bias_squared", bias.value}, {"bias_error", bias.error}});
         }
         return rows;
     };
@@ -166,13 +161,16 @@ Case bias_case(const SharedScene& scene, const std::vector<Configuration>& all, 
 }
 
 Case timed_case(const SharedScene& scene, const std::shared_ptr<accuracy::Reference>& reference, const Configuration& c,
-                const Plan& plan, std::int64_t spp, std::uint64_t seed) {
-    const auto run = [=]() -> std::vector<Row> {
+                const AccuracyPlan& plan, std::int64_t spp, std::uint64_t seed) {
+    const auto run = [=]() -> std::vector<Cells> {
         const accuracy::TimedImage made = render_image(c, *scene, {0, spp, seed, plan.threads});
         const accuracy::Halves& halves = reference->halves();
-        return {extended(start_of_row(kRun, *scene, c, plan.threads, spp),
-                         {seed, made.report.seconds, made.report.segments(), corrected_mse(made.values, halves),
-                          noise_of(halves), nullptr, nullptr, made.hash})};
+        return {start_of_row(kRun, *scene, c, plan.threads, spp) + Cells{{"seed", seed},
+                                                                         {"seconds", made.report.seconds},
+                                                                         {"segments", made.report.segments()},
+                                                                         {"mse", corrected_mse(made.values, halves)},
+                                                                         {"reference_noise", noise_of(halves)},
+                                                                         {"hash", made.hash}}};
     };
     Configuration any_engine = c;
     any_engine.engine = EngineKind::Pool;
@@ -182,68 +180,61 @@ Case timed_case(const SharedScene& scene, const std::shared_ptr<accuracy::Refere
             1, run};
 }
 
-class SpeedAccuracy : public Study {
-  public:
-    [[nodiscard]] std::string name() const override { return "speed-accuracy"; }
-    [[nodiscard]] std::string question() const override {
-        return "Which configuration reaches which error in the least time, and where does each stop getting better?";
-    }
-    [[nodiscard]] std::vector<Column> columns() const override {
-        return {{"kind", ColumnType::Text, "reference (being made), bias (no times), or run"},
-                {"scene", ColumnType::Text, "what was rendered"},
-                {"configuration", ColumnType::Text, "the next columns in words"},
-                {"engine", ColumnType::Text, "who rendered"},
-                {"precision", ColumnType::Text, "numbers of the kernels"},
-                {"sampler", ColumnType::Text, "how random numbers are made"},
-                {"roulette", ColumnType::Text, "on: paths that carry little end by chance"},
-                {"depth", ColumnType::Count, "most segments of a path"},
-                {"split", ColumnType::Count, "hits on glass that follow both branches"},
-                {"threads", ColumnType::Count, "OpenMP threads"},
-                {"width", ColumnType::Count, "image width, pixels"},
-                {"spp", ColumnType::Count, "samples for each pixel"},
-                {"seed", ColumnType::Count, "of all random numbers of the image"},
-                {"seconds", ColumnType::Real, "wall clock of the render: setup, loops, last pass"},
-                {"segments", ColumnType::Count, "rays traced"},
-                {"mse", ColumnType::Signed, "squared error of linear radiance, less the noise of the reference"},
-                {"reference_noise", ColumnType::Real, "what was taken off"},
-                {"bias_squared", ColumnType::Signed,
-                 "squared error that more samples do not mend, from pairs of images that share random numbers"},
-                {"bias_error", ColumnType::Real, "standard error of that"},
-                {"hash", ColumnType::Text, "of the sums of the image"}};
-    }
+std::vector<Case> accuracy_cases(const StudyOptions& options) {
+    const AccuracyPlan plan = accuracy_plan(options);
+    const std::filesystem::path folder = options.folder.empty() ? "" : options.folder / "references";
+    std::vector<Case> cases;
+    std::vector<std::function<Case(std::uint64_t)>> by_seed;
+    for (const SharedScene& scene : scenes_of(options)) {
+        const auto reference = std::make_shared<accuracy::Reference>(scene, plan.half_spp(), folder, plan.all_threads);
+        const std::int64_t range = std::max<std::int64_t>(1, plan.half_spp() / 16);
+        for (std::int64_t part = 0; part < 2 * ((plan.half_spp() + range - 1) / range); ++part)
+            cases.push_back(reference_case(scene, reference, plan, range, part));
 
-    [[nodiscard]] std::vector<Case> cases(const StudyOptions& options) const override {
-        const Plan plan = plan_of(options);
-        const std::filesystem::path folder = options.folder.empty() ? "" : options.folder / "references";
-        std::vector<Case> cases;
-        std::vector<Case> timed;
-        std::vector<std::function<Case(std::uint64_t)>> by_seed;
-        for (const SharedScene& scene : scenes_of(options)) {
-            const auto reference =
-                std::make_shared<accuracy::Reference>(scene, plan.half_spp(), folder, plan.all_threads);
-            const std::int64_t range = std::max<std::int64_t>(1, plan.half_spp() / 16);
-            for (std::int64_t part = 0; part < 2 * ((plan.half_spp() + range - 1) / range); ++part)
-                cases.push_back(reference_case(scene, reference, plan, range, part));
-
-            const std::vector<Configuration> all = configurations(options.depth, scene->in_float.features.dielectric);
-            cases.push_back(bias_case(scene, all, plan));
-            for (const Configuration& c : all)
-                for (const std::int64_t spp : plan.spps)
-                    by_seed.emplace_back(
-                        [=](std::uint64_t seed) { return timed_case(scene, reference, c, plan, spp, seed); });
-        }
-        // A seed after the other; what has the same seed stands side by side.
-        for (int turn = 0; turn < plan.seeds; ++turn)
-            for (const std::size_t i : turn_order(by_seed.size(), static_cast<std::size_t>(turn)))
-                cases.push_back(by_seed[i](plan.first_seed + static_cast<std::uint64_t>(turn)));
-        return cases;
+        const std::vector<Configuration> all = configurations(options.depth, scene->in_float.features.dielectric);
+        cases.push_back(bias_case(scene, all, plan));
+        for (const Configuration& c : all)
+            for (const std::int64_t spp : plan.spps)
+                by_seed.emplace_back(
+                    [=](std::uint64_t seed) { return timed_case(scene, reference, c, plan, spp, seed); });
     }
-};
+    // A seed after the other; what has the same seed stands side by side.
+    for (int turn = 0; turn < plan.seeds; ++turn)
+        for (const std::size_t i : turn_order(by_seed.size(), static_cast<std::size_t>(turn)))
+            cases.push_back(by_seed[i](plan.first_seed + static_cast<std::uint64_t>(turn)));
+    return cases;
+}
 
 }  // namespace
 
-std::unique_ptr<Study> speed_accuracy_study() {
-    return std::make_unique<SpeedAccuracy>();
+Study speed_accuracy_study() {
+    return {
+        .name = "speed-accuracy",
+        .question =
+            "Which configuration reaches which error in the least time, and where does each stop getting "
+            "better?",
+        .columns = {{"kind", ColumnType::Text, "reference (being made), bias (no times), or run"},
+                    {"scene", ColumnType::Text, "what was rendered"},
+                    {"configuration", ColumnType::Text, "the next columns in words"},
+                    {"engine", ColumnType::Text, "who rendered"},
+                    {"precision", ColumnType::Text, "numbers of the kernels"},
+                    {"sampler", ColumnType::Text, "how random numbers are made"},
+                    {"roulette", ColumnType::Text, "on: paths that carry little end by chance"},
+                    {"depth", ColumnType::Count, "most segments of a path"},
+                    {"split", ColumnType::Count, "hits on glass that follow both branches"},
+                    {"threads", ColumnType::Count, "OpenMP threads"},
+                    {"width", ColumnType::Count, "image width, pixels"},
+                    {"spp", ColumnType::Count, "samples for each pixel"},
+                    {"seed", ColumnType::Count, "of all random numbers of the image"},
+                    {"seconds", ColumnType::Real, "wall clock of the render: setup, loops, last pass"},
+                    {"segments", ColumnType::Count, "rays traced"},
+                    {"mse", ColumnType::Signed, "squared error of linear radiance, less the noise of the reference"},
+                    {"reference_noise", ColumnType::Real, "what was taken off"},
+                    {"bias_squared", ColumnType::Signed,
+                     "squared error that more samples do not mend, from pairs of images that share random numbers"},
+                    {"bias_error", ColumnType::Real, "standard error of that"},
+                    {"hash", ColumnType::Text, "of the sums of the image"}},
+        .cases = accuracy_cases};
 }
 
 }  // namespace raypool::studies

@@ -45,4 +45,9 @@ inline double waiting(const RenderReport& report) {
            (report.seconds * static_cast<double>(report.threads.size()));
 }
 
+/// Nanoseconds of a thread for a segment.
+inline double ns_per_segment(const RenderReport& report, int threads) {
+    return 1e9 * report.seconds * threads / static_cast<double>(report.segments());
+}
+
 }  // namespace raypool::studies

@@ -1,8 +1,9 @@
 /// What a study is: cases to run, and the table that they fill.
 ///
 /// A study owns the question and nothing else: runner.h interleaves the repeats, checks the images, keeps the data and
-/// resumes an interrupted run. To add a study, derive from Study in a file of its own and list it in registry.cpp. What
-/// the table says is Python's: a module of the same name in scripts/analysis/ reads the rows, judges and draws them.
+/// resumes an interrupted run. To add a study, define a function that returns it in a file of its own, and list that in
+/// registry.h and registry.cpp. What the table says is Python's: a module of the same name in scripts/analysis/ reads
+/// the rows, judges and draws them.
 #pragma once
 
 #include <cstdint>
@@ -36,32 +37,28 @@ struct Case {
     std::string image;  ///< cases of one image must all have the same hash (column "hash", empty where an engine
                         ///< refused to render); empty: no image is made
     int repeats = 1;
-    std::function<std::vector<Row>()> run;  ///< one repeat: rows of the study's columns. Seconds, not minutes
+    std::function<std::vector<Cells>()> run;  ///< one repeat: rows of the study's columns. Seconds, not minutes
 };
 
-class Study {
-  public:
-    Study() = default;
-    Study(const Study&) = delete;
-    Study& operator=(const Study&) = delete;
-    virtual ~Study() = default;
-
-    [[nodiscard]] virtual std::string name() const = 0;
-    /// What it answers, in one sentence that ends in a question mark.
-    [[nodiscard]] virtual std::string question() const = 0;
-    /// Behind "case" and "repeat", which every study has.
-    [[nodiscard]] virtual std::vector<Column> columns() const = 0;
+struct Study {
+    std::string name;
+    std::string question;         ///< what it answers, in one sentence that ends in a question mark
+    std::vector<Column> columns;  ///< behind "case" and "repeat", which every study has
     /// Throws InputError for options that it cannot carry out.
-    [[nodiscard]] virtual std::vector<Case> cases(const StudyOptions& options) const = 0;
+    std::function<std::vector<Case>(const StudyOptions& options)> cases;
     /// What the analysis must know of this build and machine beside the rows, as "facts" in run.json.
-    [[nodiscard]] virtual nlohmann::json facts() const { return nlohmann::json::object(); }
-    /// Images that the study renders itself, for its pictures to show; written into the folder of its data.
-    virtual void write_images(const std::filesystem::path& /*folder*/, const StudyOptions& /*options*/) const {}
+    std::function<nlohmann::json()> facts = [] { return nlohmann::json::object(); };
+    /// Writes images for the pictures of the study into the folder of its data; may be empty.
+    std::function<void(const std::filesystem::path& folder, const StudyOptions& options)> write_images = {};
 };
 
-/// What the options ask for, or what the study would do by itself.
-inline std::int64_t choose(std::int64_t asked, bool is_quick, std::int64_t quick, std::int64_t full) {
-    return asked != 0 ? asked : is_quick ? quick : full;
+/// A number that a study takes by itself, in a quick run and in a full one.
+struct Usual {
+    std::int64_t quick, full;
+};
+/// What is asked for, or the usual.
+inline std::int64_t choose(const StudyOptions& options, std::int64_t asked, const Usual& usual) {
+    return asked != 0 ? asked : options.is_quick ? usual.quick : usual.full;
 }
 
 }  // namespace raypool::studies

@@ -15,6 +15,12 @@ namespace raypool::studies {
 
 namespace {
 
+std::size_t column_index(const std::vector<Column>& columns, std::string_view name) {
+    const auto found = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+    RAYPOOL_CHECK(found != columns.end(), "a study knows its columns");
+    return static_cast<std::size_t>(found - columns.begin());
+}
+
 std::string cell(const Value& value) {
     if (value.is_null()) return "";
     if (value.is_number_unsigned()) return fmt::format("{}", value.get<std::uint64_t>());
@@ -87,11 +93,19 @@ void add_line(Table& table, const std::vector<std::string>& cells, const std::fu
 
 }  // namespace
 
+Cells operator+(Cells cells, const Cells& more) {
+    cells.insert(cells.end(), more.begin(), more.end());
+    return cells;
+}
+
+Row row_of(const std::vector<Column>& columns, const Cells& cells) {
+    Row row(columns.size());
+    for (const auto& [name, value] : cells) row[column_index(columns, name)] = value;
+    return row;
+}
+
 std::size_t Table::index(std::string_view column) const {
-    const auto found =
-        std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == column; });
-    RAYPOOL_CHECK(found != columns_.end(), "a study knows its columns");
-    return static_cast<std::size_t>(found - columns_.begin());
+    return column_index(columns_, column);
 }
 
 void Table::add(Row row) {

@@ -6,8 +6,10 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -30,6 +32,17 @@ struct Column {
 /// A text, a number or null, as the columns say.
 using Value = nlohmann::json;
 using Row = std::vector<Value>;
+
+inline Value or_null(const std::optional<std::int64_t>& count) {
+    return count ? Value(*count) : Value(nullptr);
+}
+
+/// A row by the names of its columns; those that it does not name are empty.
+using Cells = std::vector<std::pair<std::string, Value>>;
+/// More cells of the same row.
+Cells operator+(Cells cells, const Cells& more);
+/// A name that no column has is a bug.
+Row row_of(const std::vector<Column>& columns, const Cells& cells);
 
 class Table {
   public:

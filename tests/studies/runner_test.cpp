@@ -18,26 +18,27 @@ namespace raypool::studies {
 namespace {
 
 /// Two cases of one image, run three times, and one that makes no image and runs once.
-class Fake : public Study {
-  public:
-    [[nodiscard]] std::string name() const override { return "fake"; }
-    [[nodiscard]] std::string question() const override { return "Does it work?"; }
-    [[nodiscard]] std::vector<Column> columns() const override {
-        return {{"value", ColumnType::Real, "a number"}, {"hash", ColumnType::Text, "of the image"}};
-    }
-    [[nodiscard]] std::vector<Case> cases(const StudyOptions&) const override {
-        const auto rows = [this](const char* id, std::vector<Row> made) {
-            return [this, id, made] {
-                order.emplace_back(id);
-                if (order.size() == stop_after) stop_signal = 15;
-                return made;
+struct Fake : Study {
+    Fake() {
+        name = "fake";
+        question = "Does it work?";
+        columns = {{"value", ColumnType::Real, "a number"}, {"hash", ColumnType::Text, "of the image"}};
+        cases = [this](const StudyOptions&) -> std::vector<Case> {
+            const auto rows = [this](const char* id, std::vector<Cells> made) {
+                return [this, id, made] {
+                    order.emplace_back(id);
+                    if (order.size() == stop_after) stop_signal = 15;
+                    return made;
+                };
             };
+            return {{"a", "image", 3, rows("a", {Cells{{"value", 0.5}, {"hash", "12"}}})},
+                    {"b", "image", 3, rows("b", {Cells{{"value", 0.5}, {"hash", hash_of_b}}})},
+                    {"two rows", "", 1, rows("two rows", {Cells{{"value", 1.0}}, Cells{{"value", 2.0}}})}};
         };
-        return {{"a", "image", 3, rows("a", {{0.5, "12"}})},
-                {"b", "image", 3, rows("b", {{0.5, hash_of_b}})},
-                {"two rows", "", 1, rows("two rows", {{1.0, nullptr}, {2.0, nullptr}})}};
+        facts = [this] { return nlohmann::json{{"cores", cores}}; };
     }
-    [[nodiscard]] nlohmann::json facts() const override { return {{"cores", cores}}; }
+    Fake(const Fake&) = delete;  // its cases write into it
+    Fake& operator=(const Fake&) = delete;
 
     const char* hash_of_b = "12";
     int cores = 2;
@@ -48,7 +49,7 @@ class Fake : public Study {
 
 Table data_of(const ScratchFolder& folder) {
     std::vector<Column> columns{{"case", ColumnType::Text, ""}, {"repeat", ColumnType::Count, ""}};
-    for (const Column& column : Fake().columns()) columns.push_back(column);
+    for (const Column& column : Fake().columns) columns.push_back(column);
     return read_csv(folder / "data.csv", columns);
 }
 
@@ -215,7 +216,7 @@ TEST(StudyRunner, LeavesNoPartOfARepeatOnAFullDisk) {
             const Fake study;  // the cases run in it
             const std::vector<Case> cases = study.cases({});
             std::vector<Column> columns{{"case", ColumnType::Text, ""}, {"repeat", ColumnType::Count, ""}};
-            for (const Column& column : study.columns()) columns.push_back(column);
+            for (const Column& column : study.columns) columns.push_back(column);
             RunData data(folder.path(), columns, cases);
             data.load();
             data.open();
