@@ -151,9 +151,9 @@ class PrivateInt64 : public AccumulatorBase<Scalar> {
   public:
     PrivateInt64(Framebuffer& framebuffer, int threads) : sums_(framebuffer.sums()), squares_(framebuffer.squares()) {
         parts_.reserve(static_cast<std::size_t>(threads));
+        const std::vector<std::uint8_t> unused(block_count_of(sums_.size() / 3), 0);
         for (int i = 0; i < threads; ++i)
-            parts_.push_back(
-                {Zeros<std::int64_t>(sums_.size() + squares_.size()), std::vector<std::uint8_t>(block_count(), 0)});
+            parts_.push_back({Zeros<std::int64_t>(sums_.size() + squares_.size()), unused});
     }
     void add(const Contributions<Scalar>& contributions, SampleConverter& converter, int thread) override {
         Part& part = parts_[static_cast<std::size_t>(thread)];
