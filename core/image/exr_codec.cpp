@@ -6,11 +6,9 @@
 #include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
@@ -18,8 +16,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,61 +23,15 @@
 #include <utility>
 
 #include "core/image/exr_header.h"
+#include "core/image/exr_layer.h"
+#include "core/image/exr_streams.h"
 #include "core/image/image_codecs.h"
 
 namespace raypool {
 namespace {
 
-using StreamPosition = decltype(std::declval<Imf::OStream&>().tellp());  // its type changed in version 3
 const std::array<std::string, 3> kChannels{"R", "G", "B"};
 constexpr std::size_t kPixelBytes = 3 * sizeof(float);
-
-class MemoryOutput final : public Imf::OStream {
-  public:
-    MemoryOutput() : OStream("the file") {}
-
-    void write(const char data[], int size) override {
-        const std::size_t end = position_ + static_cast<std::size_t>(size);
-        if (end > bytes.size()) bytes.resize(end);
-        std::memcpy(bytes.data() + position_, data, static_cast<std::size_t>(size));
-        position_ = end;
-    }
-    StreamPosition tellp() override { return position_; }
-    void seekp(StreamPosition position) override { position_ = position; }
-
-    Bytes bytes;
-
-  private:
-    std::size_t position_ = 0;
-};
-
-class MemoryInput final : public Imf::IStream {
-  public:
-    /// A byte at a place in `hidden` (ascending) is read as '?'; both must outlive this.
-    MemoryInput(BytesView bytes, std::span<const std::size_t> hidden)
-        : IStream("the file"), bytes_(bytes), hidden_(hidden) {}
-
-    bool read(char target[], int size) override {
-        if (position_ > bytes_.size() || static_cast<std::size_t>(size) > bytes_.size() - position_) {
-            throw std::runtime_error("the file ends too early");
-        }
-        std::memcpy(target, bytes_.data() + position_, static_cast<std::size_t>(size));
-        const std::size_t end = position_ + static_cast<std::size_t>(size);
-        for (auto place = std::lower_bound(hidden_.begin(), hidden_.end(), position_);
-             place != hidden_.end() && *place < end; ++place) {
-            target[*place - position_] = '?';
-        }
-        position_ = end;
-        return position_ < bytes_.size();
-    }
-    StreamPosition tellg() override { return position_; }
-    void seekg(StreamPosition position) override { position_ = position; }
-
-  private:
-    BytesView bytes_;
-    std::span<const std::size_t> hidden_;
-    std::size_t position_ = 0;
-};
 
 using Window = std::remove_cvref_t<decltype(std::declval<Imf::Header>().dataWindow())>;
 
@@ -90,10 +40,6 @@ std::int64_t width_of(const Window& window) {
 }
 std::int64_t height_of(const Window& window) {
     return std::int64_t{window.max.y} - window.min.y + 1;
-}
-
-bool is_deep(const Imf::Header& header) {
-    return header.hasType() && !Imf::isImage(header.type());
 }
 
 /// Rows that OpenEXR holds at a time: those of a tile, or of a block of scan lines at the most.
@@ -147,46 +93,6 @@ std::vector<std::size_t> check_headers(BytesView bytes) {
     return std::move(headers.hidden);
 }
 
-/// The channels that make a pixel.
-struct Layer {
-    int part = -1;
-    std::array<std::string, 3> channels;  ///< of red, green and blue; the same of a grey image
-    bool has_chroma = false;              ///< luminance, beside which there is chroma
-};
-
-std::optional<Layer> layer_of(const Imf::MultiPartInputFile& file, const std::array<const char*, 3>& names) {
-    for (int part = 0; part < file.parts(); ++part) {
-        if (is_deep(file.header(part))) continue;
-        const Imf::ChannelList& channels = file.header(part).channels();
-        const std::string_view first(names[0]);
-        std::optional<Layer> found;
-        for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
-            const std::string_view name(channel.name());
-            if (!name.ends_with(first) || (name.size() > first.size() && name[name.size() - first.size() - 1] != '.'))
-                continue;
-            const std::string prefix(name.substr(0, name.size() - first.size()));
-            const Layer layer{part, {prefix + names[0], prefix + names[1], prefix + names[2]}, false};
-            const bool is_whole = std::all_of(layer.channels.begin(), layer.channels.end(), [&](const auto& c) {
-                return channels.findChannel(c.c_str()) != nullptr;
-            });
-            if (is_whole && (!found || prefix.empty())) found = layer;
-        }
-        if (found) return found;
-    }
-    return {};
-}
-
-/// The first layer with red, green and blue, one without a name before others; else the first luminance.
-Layer find_layer(const Imf::MultiPartInputFile& file) {
-    if (const std::optional<Layer> colour = layer_of(file, {"R", "G", "B"})) return *colour;
-    std::optional<Layer> grey = layer_of(file, {"Y", "Y", "Y"});
-    if (!grey) throw std::runtime_error("has no channels R, G and B, and no luminance Y, in a part that is not deep");
-    const Imf::ChannelList& channels = file.header(grey->part).channels();
-    grey->has_chroma = file.parts() == 1 && grey->channels[0] == "Y" && channels.findChannel("RY") != nullptr &&
-                       channels.findChannel("BY") != nullptr;
-    return *grey;
-}
-
 /// The three channels of the rows in `window`, stored from `first` on.
 Imf::FrameBuffer frame_buffer(const std::array<std::string, 3>& channels, float* first, const Window& window) {
     const std::size_t row_bytes = static_cast<std::size_t>(width_of(window)) * kPixelBytes;
@@ -218,7 +124,7 @@ Image read_rows(const Imf::Header& header, Read read) {
     return image;
 }
 
-Image read_layer(Imf::MultiPartInputFile& file, const Layer& layer) {
+Image read_layer(Imf::MultiPartInputFile& file, const ExrLayer& layer) {
     Imf::InputPart part(file, layer.part);
     const bool is_grey = layer.channels[0] == layer.channels[1];
     return read_rows(file.header(layer.part), [&](const Window& rows, float* first) {
@@ -246,26 +152,6 @@ Image read_luminance_and_chroma(BytesView bytes, std::span<const std::size_t> hi
             *first++ = pixel.b;
         }
     });
-}
-
-/// What the file holds beside the layer.
-std::vector<std::string> left_out(const Imf::MultiPartInputFile& file, const Layer& layer) {
-    std::vector<std::string> names;
-    for (int part = 0; part < file.parts(); ++part) {
-        const Imf::Header& header = file.header(part);
-        if (part != layer.part) {
-            names.push_back(fmt::format("part {}", header.hasName() ? header.name() : fmt::to_string(part)));
-            continue;
-        }
-        for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
-            const std::string name = channel.name();
-            const bool is_taken =
-                std::find(layer.channels.begin(), layer.channels.end(), name) != layer.channels.end() ||
-                (layer.has_chroma && (name == "RY" || name == "BY"));
-            if (!is_taken) names.push_back("channel " + name);
-        }
-    }
-    return names;
 }
 
 std::string primaries_of(const Imf::Header& header) {
@@ -302,7 +188,7 @@ ImageContents decode_exr(BytesView bytes) {
     const std::vector<std::size_t> hidden = check_headers(bytes);
     MemoryInput stream(bytes, hidden);
     Imf::MultiPartInputFile file(stream);
-    const Layer layer = find_layer(file);
+    const ExrLayer layer = find_layer(file);
     const Imf::Header& header = file.header(layer.part);
     const Window& display = header.displayWindow();  // a caller may fill it
     check_image_size(width_of(display), height_of(display), kMaxImageSide, kMaxImagePixels,

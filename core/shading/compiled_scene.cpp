@@ -8,16 +8,12 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "core/geometry/large_boxes.h"
-#include "core/geometry/node_motion.h"
 #include "core/geometry/shape_bounds.h"
+#include "core/shading/shape_blocks.h"
 
 namespace raypool {
 
 namespace {
-
-/// Shapes that are worth more than one thread.
-constexpr std::size_t kFewestShapes = 16384;
 
 enum class Shape : std::uint8_t { Sphere, Quad, Plane };
 
@@ -41,8 +37,7 @@ class Compiler {
         check_size();
         add_textures();
         add_surfaces();
-        add_spheres();
-        add_planars();
+        add_blocks(scene_, coincidence_, out_);
         SceneTables<Scalar>::for_each_table(out_, [](auto& table) { table.shrink_to_fit(); });
 
         CompiledScene<Scalar> compiled(std::move(out_));
@@ -59,9 +54,6 @@ class Compiler {
     }
 
   private:
-    using Ids = std::vector<std::uint32_t>;
-    static constexpr int kWidth = kTreeWidth<Scalar>;
-
     void check_size() const {
         constexpr std::int64_t kMostPixels = std::int64_t{1} << 32U;  // a ray record names its pixel in 32 bits
         if (scene_.width * scene_.height > kMostPixels)
@@ -167,123 +159,6 @@ class Compiler {
         }
         out_.surfaces.push_back(surface);
         out_.planars.push_back(planar);
-    }
-
-    void add_spheres() {
-        Ids ids = shown_ids(0, scene_.spheres.size());
-        const auto boxes_of = [&](const Ids& of) {
-            return boxes_by_id(
-                of, [&](std::uint32_t id) { return sphere_box<Scalar>(scene_.spheres[id], features_.motion ? 1 : 0); });
-        };
-        std::vector<Box> boxes = boxes_of(ids);
-        Ids large = large_boxes(boxes, kWidth);
-        if (!large.empty()) {
-            for (std::uint32_t& place : large) place = ids[place];
-            out_.large_spheres.push_back(sphere_block(large));
-            std::erase_if(ids,
-                          [&](std::uint32_t id) { return std::find(large.begin(), large.end(), id) != large.end(); });
-            boxes = boxes_of(ids);
-        }
-        out_.sphere_tree = block_tree<SphereBlock<Scalar, kWidth>>(
-            boxes, ids, [&](std::span<const std::uint32_t> in_leaf) { return sphere_block(in_leaf); });
-        if (!features_.motion) return;
-        for (int axis = 0; axis < 3; ++axis) out_.sphere_tree.motion[axis] = node_motion(out_.sphere_tree, axis);
-    }
-
-    void add_planars() {
-        const std::size_t first_plane = scene_.spheres.size() + scene_.quads.size();
-        const Ids ids = shown_ids(scene_.spheres.size(), first_plane);
-        const auto box_of = [&](std::uint32_t id) {
-            return quad_box<Scalar>(scene_.quads[id - scene_.spheres.size()]);
-        };
-        out_.quad_tree = block_tree<PlanarBlock<Scalar, kWidth>>(
-            boxes_by_id(ids, box_of), ids, [&](std::span<const std::uint32_t> in_leaf) {
-                std::array<Box, kWidth> leaf_boxes;
-                std::transform(in_leaf.begin(), in_leaf.end(), leaf_boxes.begin(), box_of);
-                return planar_block(in_leaf, leaf_boxes);
-            });
-        const Ids planes = shown_ids(first_plane, first_plane + scene_.planes.size());
-        for (std::size_t i = 0; i < planes.size(); i += kWidth) {
-            const std::span block = std::span(planes).subspan(i, std::min<std::size_t>(kWidth, planes.size() - i));
-            out_.planes.push_back(planar_block(block, std::array<Box, kWidth>{}));
-        }
-    }
-
-    /// Of the ids in [first, end), those of shapes that no earlier one hides.
-    [[nodiscard]] Ids shown_ids(std::size_t first, std::size_t end) const {
-        Ids ids;
-        for (std::size_t id = first; id < end; ++id)
-            if (!coincidence_.is_hidden[id]) ids.push_back(static_cast<std::uint32_t>(id));
-        return ids;
-    }
-
-    SphereBlock<Scalar, kWidth> sphere_block(std::span<const std::uint32_t> ids) const {
-        SphereBlock<Scalar, kWidth> block{};
-        std::fill_n(block.radius, kWidth, std::numeric_limits<Scalar>::quiet_NaN());
-        std::fill_n(block.id, kWidth, kNoPrimitive);
-        for (std::size_t lane = 0; lane < ids.size(); ++lane) {
-            using Row = SurfaceRow<Scalar>;
-            const Row& row = out_.surfaces[ids[lane]];
-            for (int i = 0; i < 3; ++i) {
-                block.center[i][lane] = row.value[Row::kCenter + i];
-                block.motion[i][lane] = row.value[Row::kMotion + i];
-            }
-            block.radius[lane] = row.value[Row::kRadius];
-            block.padded_radius[lane] = padded_radius<Scalar>(scene_.spheres[ids[lane]]);
-            block.id[lane] = static_cast<std::int32_t>(ids[lane]);
-        }
-        return block;
-    }
-
-    PlanarBlock<Scalar, kWidth> planar_block(std::span<const std::uint32_t> ids,
-                                             const std::array<Box, kWidth>& boxes) const {
-        PlanarBlock<Scalar, kWidth> block{};
-        for (auto& component : block.normal) std::fill_n(component, kWidth, std::numeric_limits<Scalar>::quiet_NaN());
-        std::fill_n(block.id, kWidth, kNoPrimitive);
-        for (std::size_t lane = 0; lane < ids.size(); ++lane) {
-            const SurfaceRow<Scalar>& surface = out_.surfaces[ids[lane]];
-            const PlanarRow<Scalar>& planar = out_.planars[ids[lane] - scene_.spheres.size()];
-            for (int i = 0; i < 3; ++i) {
-                block.point[i][lane] = surface.value[SurfaceRow<Scalar>::kMotion + i];
-                block.corner[i][lane] = planar.value[PlanarRow<Scalar>::kCorner + i];
-                block.normal[i][lane] = surface.value[SurfaceRow<Scalar>::kCenter + i];
-                block.dual_u[i][lane] = planar.value[PlanarRow<Scalar>::kDualU + i];
-                block.dual_v[i][lane] = planar.value[PlanarRow<Scalar>::kDualV + i];
-                block.low[i][lane] = static_cast<Scalar>(boxes[lane].low[i]);
-                block.high[i][lane] = static_cast<Scalar>(boxes[lane].high[i]);
-            }
-            block.group[lane] =
-                static_cast<std::int32_t>(PlanarMark<Scalar>::group(surface.value[SurfaceRow<Scalar>::kRadius], 0));
-            block.id[lane] = static_cast<std::int32_t>(ids[lane]);
-        }
-        return block;
-    }
-
-    template <class BoxOf>
-    static std::vector<Box> boxes_by_id(const Ids& ids, BoxOf box_of) {
-        std::vector<Box> boxes(ids.size());
-#pragma omp parallel for schedule(static) if (ids.size() > kFewestShapes)
-        for (std::size_t i = 0; i < ids.size(); ++i) boxes[i] = box_of(ids[i]);
-        return boxes;
-    }
-
-    /// make_block(ids of a leaf) throws nothing.
-    template <class Block, class MakeBlock>
-    BlockTree<Block, Scalar, kWidth> block_tree(const std::vector<Box>& boxes, const Ids& ids,
-                                                MakeBlock make_block) const {
-        WideBvh<Scalar, kWidth> bvh = collapse<Scalar, kWidth>(build_binary_bvh(boxes, kWidth));
-        BlockTree<Block, Scalar, kWidth> tree;
-        tree.blocks.resize(bvh.leaves.size());
-#pragma omp parallel for schedule(static) if (ids.size() > kFewestShapes)
-        for (std::size_t i = 0; i < bvh.leaves.size(); ++i) {
-            const auto& leaf = bvh.leaves[i];
-            std::array<std::uint32_t, kWidth> in_leaf;
-            for (std::uint32_t k = 0; k < leaf.count; ++k) in_leaf[k] = ids[bvh.order[leaf.first + k]];
-            tree.blocks[i] = make_block(std::span(in_leaf).first(leaf.count));
-        }
-        tree.nodes = std::move(bvh.nodes);
-        tree.depth = bvh.depth;
-        return tree;
     }
 
     const Scene& scene_;

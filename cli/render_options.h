@@ -1,0 +1,53 @@
+/// The options of `render` on the command line, and the settings of a render that they make.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/checkpoint_keeper.h"
+#include "cli/pool_options.h"
+#include "core/image/cost_image.h"
+#include "core/runtime/settings.h"
+
+namespace raypool::cli {
+
+/// As they are given; an empty name of a file means that it is not written.
+struct RenderOptions {
+    std::string scene = "paper";
+    std::string output;
+    std::string stats;
+    std::string trace;
+    std::string cost_image;
+    std::string cost = "tests";
+    std::string engine;  ///< empty: the fastest that can do what is asked for
+    std::int64_t spp = 100;
+    std::int64_t width = 0;  ///< 0: the scene's
+    std::int64_t depth = 50;
+    int split_depth = 0;
+    std::string seed = "0";
+    std::string sampler = "independent";
+    bool roulette = false;
+    std::optional<std::string> samples;
+    double target_error = 0;
+    int threads = 0;  ///< 0: OpenMP's
+    std::optional<std::string> schedule;
+    std::optional<std::string> grain;
+    std::string precision = "float";
+    bool count_work = false;
+    bool is_quiet = false;
+    CheckpointOptions checkpoint;
+    PoolOptions pool;
+};
+
+void add_render_options(CLI::App& command, RenderOptions& options);
+
+/// What --cost names.
+Cost cost_of(const std::string& word);
+
+/// Refuses (InputError) texts that make no sense. Trace and cost image are still to be set.
+RenderSettings render_settings(const RenderOptions& options);
+
+}  // namespace raypool::cli
