@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/traverse.h"
+#include "core/shading/compiled_scene.h"
 #include "tests/core/geometry/brute_force.h"
 #include "tests/random_inputs.h"
 
