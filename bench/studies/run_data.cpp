@@ -9,6 +9,8 @@
 #include <span>
 #include <system_error>
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "core/base/error.h"
@@ -44,12 +46,13 @@ void RunData::open() {
 void RunData::add(const Case& c, int repeat, const std::vector<Cells>& added) {
     std::vector<Row> rows;
     for (const Cells& cells : added) {
-        const Row& row = rows.emplace_back(row_of(table_.columns(), Cells{{"case", c.id}, {"repeat", repeat}} + cells));
+        Row row = row_of(table_.columns(), Cells{{"case", c.id}, {"repeat", repeat}} + cells);
         for (std::size_t i = 0; i < row.size(); ++i)
             if (const Column& column = table_.columns()[i]; !fault(row[i], column.type).empty())
                 throw std::logic_error(
                     fmt::format("a bug in the study: {} of {} {}", column.name, c.id, fault(row[i], column.type)));
         check_image(row);
+        rows.push_back(std::move(row));
     }
     const std::string lines = csv_lines(rows);
     struct stat before {};

@@ -17,20 +17,20 @@ namespace raypool::studies {
 namespace {
 
 using stability::Failure;
-using stability::Kind;
 using stability::Method;
+using MethodKind = stability::Kind;
 
 constexpr const char* kCurve = "curve";
 constexpr const char* kCost = "cost";
 constexpr const char* kImage = "image";
 
-const char* to_string(Kind kind) {
+const char* to_string(MethodKind kind) {
     switch (kind) {
-        case Kind::Naive:
+        case MethodKind::Naive:
             return "naive";
-        case Kind::Alternative:
+        case MethodKind::Alternative:
             return "other";
-        case Kind::Ours:
+        case MethodKind::Ours:
             break;
     }
     return "ours";
@@ -96,7 +96,7 @@ std::vector<Cells> image_rows(const Failure& failure, const RenderSettings& sett
                         {"id", failure.id},
                         {"row", failure.row},
                         {"method", is_ours ? "ours, float" : "naive, float"},
-                        {"method_kind", to_string(is_ours ? Kind::Ours : Kind::Naive)},
+                        {"method_kind", to_string(is_ours ? MethodKind::Ours : MethodKind::Naive)},
                         {"error", stability::changed_share(is_ours ? images.ours : images.naive, images.reference)}});
     return rows;
 }
