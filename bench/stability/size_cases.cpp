@@ -43,7 +43,8 @@ constexpr auto kJitterError = []<class Scalar>(const auto& ray_direction, double
     description.vertical_fov_degrees = 2 * std::atan(0.5) * 180 / std::numbers::pi;  // one unit high at distance one
     const auto edge = static_cast<std::int64_t>(width);
     const Camera<Scalar> camera = make_camera<Scalar>(description, edge, edge);
-    const auto x = static_cast<Scalar>(edge / 2);
+    const std::int64_t middle = edge / 2;
+    const auto x = static_cast<Scalar>(middle);
     Errors errors;
     for (std::uint32_t sample = 0; sample < static_cast<std::uint32_t>(samples); ++sample) {
         const Scalar jitter = random_block<Scalar>({0, sample}, 0, RandomPurpose::Film, random_seed(0))[0];

@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <span>
 #include <system_error>
-
 #include <utility>
 
 #include <fmt/format.h>
