@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <memory>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 
 #include "bench/studies/statistics.h"
 #include "cli/commands.h"
+#include "cli/common_options.h"
 #include "cli/engines.h"
 #include "cli/options.h"
 #include "cli/pool_options.h"
@@ -18,7 +18,6 @@
 #include "core/base/json_file.h"
 #include "core/base/output_file.h"
 #include "core/runtime/environment.h"
-#include "core/scene/scene_reader.h"
 #include "wavefront/engine.h"
 #include "wavefront/ladder.h"
 
@@ -36,18 +35,8 @@ constexpr bool kIsDebugBuild = false;
 constexpr bool kIsDebugBuild = true;
 #endif
 
-struct CompareOptions {
-    std::string scene = "paper";
+struct CompareOptions : CommonOptions {
     std::int64_t spp = 32;
-    std::int64_t width = 0;
-    std::int64_t depth = 50;
-    int split_depth = 0;
-    std::string seed = "0";
-    std::string sampler = "independent";
-    bool roulette = false;
-    int threads = 0;
-    std::optional<std::string> schedule;
-    std::optional<std::string> grain;
     int repeats = 5;
     bool only_check = false;
     std::string json;
@@ -154,21 +143,11 @@ int compare(const CompareOptions& options) {
         throw InputError("compare: a debug build does not time; build in Release, or add --check");
     check_distinct({{"--json", options.json}}, {{"the scene", options.scene}});
     if (!options.json.empty()) check_writable(options.json);
-    Scene scene = load_scene(options.scene);
-    if (options.width != 0) set_width(scene, options.width);
-    const int threads = thread_count(options.threads);  // before anything runs in parallel
-    const CompiledScene<float> compiled = compile<float>(scene);
-
-    RenderSettings settings;
+    RenderSettings settings = common_settings(options);
     settings.end_sample = options.spp;
-    settings.depth = static_cast<std::int32_t>(options.depth);
-    settings.split_depth = options.split_depth;
-    settings.seed = parse_seed(options.seed);
-    settings.sampler = parse_sampler(options.sampler);
-    settings.roulette = options.roulette;
-    settings.threads = threads;
     settings.schedule = chosen_schedule(options.schedule, options.grain);
-    if (options.grain) settings.grain = parse_grain(*options.grain);
+    const Scene scene = scene_of(options);
+    const CompiledScene<float> compiled = compile<float>(scene);
 
     std::vector<Contender> list = contenders(settings);
     const int repeats = options.only_check ? 1 : options.repeats;
@@ -223,23 +202,11 @@ int compare(const CompareOptions& options) {
 
 void add_compare_command(CLI::App& app, int& status) {
     auto options = std::make_shared<CompareOptions>();
-    CLI::App* command = app.add_subcommand("compare", "Run every engine in turn: same hash? how fast? which threads waited?");
-    command->add_option("scene", options->scene, "Scene file, or the name of a built-in scene (default: paper)");
+    CLI::App* command =
+        app.add_subcommand("compare", "Run every engine in turn: same hash? how fast? which threads waited?");
+    add_common_options(*command, *options);
     command->add_option("--spp", options->spp, "Samples per pixel (default: 32)")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}));
-    command->add_option("--width", options->width, "Image width; the height follows (default: the scene's)")
-        ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
-    command->add_option("--depth", options->depth, "Most segments of a path (default: 50)")
-        ->check(CLI::Range(std::int64_t{0}, std::int64_t{path_step::kMostBounces}));
-    command->add_option("--split-depth", options->split_depth, "Follow both rays at so many first hits on glass")
-        ->check(CLI::Range(0, path_step::kMostSplits));
-    command->add_option("--seed", options->seed, "Seed of all random numbers (default: 0)");
-    command->add_option("--sampler", options->sampler, "As for render")->check(CLI::IsMember({"independent", "sobol"}));
-    command->add_flag("--roulette", options->roulette, "As for render");
-    command->add_option("--threads", options->threads, "OpenMP threads (default: OMP_NUM_THREADS)")
-        ->check(CLI::Range(1, 4096));
-    command->add_option("--schedule", options->schedule, "As for render, of the engines that loop over the image");
-    command->add_option("--grain", options->grain, "As for render, of the engines that loop over the image");
     command->add_option("--repeats", options->repeats, "Interleaved runs of each engine (default: 5)")
         ->check(CLI::Range(1, 1000));
     command->add_flag("--check", options->only_check, "Compare images and segments only, do not time");

@@ -26,7 +26,6 @@
 #include "core/image/image_file.h"
 #include "core/runtime/environment.h"
 #include "core/runtime/trace.h"
-#include "core/scene/scene_reader.h"
 
 namespace raypool::cli {
 
@@ -149,8 +148,7 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     }
 
     Stopwatch watch;
-    Scene scene = load_scene(options.scene);
-    if (options.width != 0) set_width(scene, options.width);
+    Scene scene = scene_of(options);
     check_memory(scene, options, ranks);
     CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/checkpoint_keeper.h"
+#include "cli/common_options.h"
 #include "cli/pool_options.h"
 #include "core/image/cost_image.h"
 #include "core/runtime/settings.h"
@@ -15,8 +16,7 @@
 namespace raypool::cli {
 
 /// As they are given; an empty name of a file means that it is not written.
-struct RenderOptions {
-    std::string scene = "paper";
+struct RenderOptions : CommonOptions {
     std::string output;
     std::string stats;
     std::string trace;
@@ -24,17 +24,8 @@ struct RenderOptions {
     std::string cost = "tests";
     std::string engine;  ///< empty: the fastest that can do what is asked for
     std::int64_t spp = 100;
-    std::int64_t width = 0;  ///< 0: the scene's
-    std::int64_t depth = 50;
-    int split_depth = 0;
-    std::string seed = "0";
-    std::string sampler = "independent";
-    bool roulette = false;
     std::optional<std::string> samples;
     double target_error = 0;
-    int threads = 0;  ///< 0: OpenMP's
-    std::optional<std::string> schedule;
-    std::optional<std::string> grain;
     std::string precision = "float";
     bool count_work = false;
     bool is_quiet = false;

@@ -245,7 +245,7 @@ std::unique_ptr<RenderSession> begin(const CompiledScene<Scalar>& scene, const R
                                              tracer_maker<form, features, Scalar, Work, splitting, rules>());
 }
 
-/// Picks the code compiled for what the scene needs. Counting and splitting are compiled once each, for all needs.
+/// Picks the code compiled for the features of the scene. Counting and splitting are compiled once each, for all.
 template <Form form, class Scalar>
 std::unique_ptr<RenderSession> begin(const CompiledScene<Scalar>& scene, const RenderSettings& settings,
                                      Framebuffer& framebuffer) {

@@ -1,4 +1,4 @@
-/// The simplifications that advise.h tries one at a time, and the configuration that they start from.
+/// The simplifications that advice tries one at a time, and the configuration that they start from.
 #pragma once
 
 #include <functional>

@@ -16,7 +16,8 @@ namespace raypool::accuracy {
 enum class EngineKind : std::uint8_t { Recursive, Pool };
 enum class Precision : std::uint8_t { Float, Double };
 
-/// More segments than this nobody asks for: where it matters at all, recursion no longer fits into a stack.
+/// More segments than any sensible render asks for: where the depth matters at all, recursion no longer fits into a
+/// stack.
 inline constexpr std::int32_t kDeep = 1000;
 
 struct Configuration {

@@ -1,6 +1,6 @@
 /// What is known of a configuration from small renders of it, and what that foretells of a large one.
 ///
-/// Called by advise.h, which says what is promised and why. Pure functions.
+/// What is promised, and why, stands in advise.h. Pure functions.
 #pragma once
 
 #include <cstdint>

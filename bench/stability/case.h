@@ -70,7 +70,7 @@ CaseMethods sum_cases();
 CaseMethods random_cases();
 CaseMethods texture_cases();
 CaseMethods size_cases();
-CaseMethods flat_cases();
+CaseMethods planar_cases();
 CaseMethods image_cases();
 
 }  // namespace raypool::stability

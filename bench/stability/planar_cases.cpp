@@ -112,7 +112,7 @@ constexpr auto kSeam = []<class Scalar>(const auto& is_met, double distance, std
 
 }  // namespace
 
-CaseMethods flat_cases() {
+CaseMethods planar_cases() {
     return {{"far-plane", Methods(kFarPlane).naive("n . p = offset, float", kOffsetPlane).ours_in_both(kOurPlane)},
             {"grazing-plane", Methods(kGrazingPlane)
                                   .ours<float>("ours, float", kOurPlane)

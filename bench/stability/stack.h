@@ -6,7 +6,7 @@
 namespace raypool::stability {
 
 enum class Deep : std::uint8_t {
-    Recursion,  ///< the recursive tracer, with nobody asking whether the stack holds it
+    Recursion,  ///< the recursive tracer, without the check that the stack holds it
     Checked,    ///< the recursive engine, which refuses what the stack cannot hold
     Loop        ///< the iterative engine
 };

@@ -1,4 +1,4 @@
-// Adaptive sampling against the same number of samples everywhere: error, time, bias, and who waits for whom.
+// Adaptive sampling against the same number of samples everywhere: error, time, bias, and how threads share the work.
 
 #include <omp.h>
 
@@ -88,7 +88,7 @@ Made make_adaptive(const Engine& engine, const CompiledScene<float>& scene, Rend
     return made;
 }
 
-/// Ways to share out the pixels of a pass. Static ones fix beforehand who does what, so that they can be counted with
+/// Ways to share out the pixels of a pass. Static ones fix beforehand what each thread does, so that they can be counted with
 /// any number of threads; pools whose threads take lines as they ask for them run on the cores that there are.
 struct Sharing {
     LoopWay way;
@@ -136,7 +136,7 @@ Case pair_case(const SharedScene& scene, const SharedReference& reference, const
     return {fmt::format("{} to {:g}, seed {}", scene->description.name, error, seed), "", 1, run};
 }
 
-/// Who does how much in the passes of an adaptive render and in a uniform one.
+/// How much each thread does in the passes of an adaptive render and in a uniform one.
 std::vector<Cells> load_rows(const accuracy::SceneInBoth& scene, const AdaptivePlan& plan, double error) {
     std::vector<Cells> rows;
     std::string expected;

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/studies/process.h"
-#include "bench/studies/scratch_folder.h"
+#include "core/base/scratch_folder.h"
 #include "core/runtime/environment.h"
 
 namespace raypool::studies {
@@ -37,7 +37,7 @@ bool has_valgrind() {
 /// The commit that a raypool command was built of; empty where it cannot be told.
 std::string commit_of(const fs::path& command) {
     const ScratchFolder scratch;
-    const std::string stats = scratch.file("stats.json").string();
+    const std::string stats = (scratch / "stats.json").string();
     const int status = run_process(
         {command.string(), "render", "--width", "1", "--spp", "1", "--threads", "1", "--quiet", "--stats", stats});
     const json found = status == 0 ? read_json(stats) : json();
@@ -93,15 +93,15 @@ CacheCounts read_cachegrind(std::istream& file, const std::function<bool(const s
 
 Cachegrind run_cachegrind(const std::vector<std::string>& arguments) {
     const ScratchFolder scratch;
-    const std::string counts = scratch.file("counts").string();
-    const std::string stats = scratch.file("stats.json").string();
+    const std::string counts = (scratch / "counts").string();
+    const std::string stats = (scratch / "stats.json").string();
     std::vector<std::string> all{"valgrind",
                                  "--tool=cachegrind",
                                  "--cache-sim=yes",
                                  std::string("--D1=") + kSimulatedD1,
                                  std::string("--LL=") + kSimulatedLl,
                                  "--cachegrind-out-file=" + counts,
-                                 "--log-file=" + scratch.file("log").string(),
+                                 "--log-file=" + (scratch / "log").string(),
                                  cachegrind_command().path.string(),
                                  "render"};
     all.insert(all.end(), arguments.begin(), arguments.end());

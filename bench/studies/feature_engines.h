@@ -1,4 +1,4 @@
-/// Engines whose kernels are compiled for a set of features of choice, whatever the scene needs: study `needs`.
+/// Engines whose kernels are compiled for a set of features of choice, whatever the scene needs: study `features`.
 ///
 /// The engines of the project are compiled for three sets (kCompiledFeatures); here are those with one feature each.
 /// They make the image of any scene that lacks what they lack.
@@ -55,7 +55,7 @@ BeginFunction pool_begin_of_part<1>(std::size_t set);
 template <>
 BeginFunction pool_begin_of_part<2>(std::size_t set);
 
-/// The function of each set from `first` on, `count` of them, by Pick<needs>::begin.
+/// The function of each set from `first` on, `count` of them, by Pick<features>::begin.
 template <template <Features> class Pick, std::size_t first, std::size_t count>
 BeginFunction begin_of_set(std::size_t set) {
     constexpr auto kFunctions = []<std::size_t... i>(std::index_sequence<i...>) {

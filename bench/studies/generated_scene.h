@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "bench/studies/scratch_folder.h"
+#include "core/base/scratch_folder.h"
 #include "core/scene/scene.h"
 
 namespace raypool::studies {
@@ -19,7 +19,7 @@ class GeneratedScene {
   public:
     GeneratedScene(const std::string& kind, std::int64_t shapes);
 
-    [[nodiscard]] std::filesystem::path path() const { return folder_.file("scene.json"); }
+    [[nodiscard]] std::filesystem::path path() const { return folder_ / "scene.json"; }
     [[nodiscard]] Scene read() const;
 
   private:

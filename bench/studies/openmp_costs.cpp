@@ -24,7 +24,7 @@ std::uint64_t compute(std::int64_t steps) {
 
 volatile std::uint64_t sink;
 
-/// Has the compiler believe that somebody needs the value.
+/// Has the compiler believe that the value is needed.
 void keep(std::uint64_t value) {
     asm volatile("" : : "r"(value));
 }

@@ -1,4 +1,4 @@
-/// A scene without any feature of Features, but with the shapes and so nearly the work of another: study `needs`.
+/// A scene without any feature of Features, but with the shapes and so nearly the work of another: study `features`.
 #pragma once
 
 #include "core/scene/scene.h"

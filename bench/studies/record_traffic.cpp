@@ -44,7 +44,7 @@ double pass_s(std::size_t capacity, double survivors) {
                 records.template append<Real>(kept, record, masks[i], capacity);
                 kept += static_cast<std::size_t>(std::popcount(masks[i]));
             }
-            __asm__ volatile("" : : "r"(&records) : "memory");  // somebody may read what was written
+            __asm__ volatile("" : : "r"(&records) : "memory");  // what was written may be read
         }
         seconds.push_back((omp_get_wtime() - begin) / static_cast<double>(rounds * capacity));
     }

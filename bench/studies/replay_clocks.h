@@ -1,4 +1,4 @@
-/// What replays are made of: who hands out the iterations of a loop, and who comes next.
+/// What replays are made of: what hands out the iterations of a loop, and which thread comes next.
 #pragma once
 
 #include <algorithm>

@@ -14,7 +14,7 @@ Replayed replay_from(std::span<const double> items, const ReplaySchedule& schedu
     const std::vector<std::int32_t> order = order_of(items, schedule);
     Dispenser dispenser(static_cast<std::int64_t>(items.size()), schedule, threads);
     Replayed result{std::vector<double>(static_cast<std::size_t>(threads)), std::vector<std::int32_t>(items.size()), 0};
-    double start = 0;  // of the latest chunk: nobody is served before it
+    double start = 0;  // of the latest chunk: no thread is served before it
     for (Clocks clocks(threads, first); !clocks.is_empty();) {
         const auto [asked, rank, thread] = clocks.take();
         const Chunk chunk = dispenser.next(thread);

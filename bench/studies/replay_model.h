@@ -33,7 +33,7 @@ struct ReplaySchedule {
 struct ReplayCosts {
     double fetch = 0;    ///< of a chunk, to the thread that fetches it; static schedules fetch none
     double barrier = 0;  ///< of the end of a round
-    double serve = 0;    ///< of a chunk, to the one who hands them out: those who ask meanwhile wait
+    double serve = 0;    ///< of a chunk, a time in which others that ask wait
 };
 
 struct Replayed {

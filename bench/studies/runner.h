@@ -30,8 +30,8 @@ std::vector<std::size_t> turn_order(std::size_t count, std::size_t turn);
 /// How many repeats of cases the study takes in all.
 std::int64_t run_count(const Study& study, const StudyOptions& options);
 
-/// Makes the folder, and keeps other processes from running a study in it while the lock lives: whoever calls
-/// run_study() and analyse() holds one. Throws InputError where another process is at work there.
+/// Makes the folder, and keeps other processes from running a study in it while the lock lives: a caller of
+/// run_study() or analyse() holds one. Throws InputError where another process is at work there.
 [[nodiscard]] FileLock lock_folder(const std::filesystem::path& folder);
 
 /// Returns false when it was stopped before the end. Leaves rows and run.json, for analysis.h. Throws InputError when

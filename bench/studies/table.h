@@ -26,7 +26,7 @@ enum class ColumnType : std::uint8_t {
 struct Column {
     std::string name;
     ColumnType type;
-    std::string what;  ///< meaning and unit, for whoever reads the data
+    std::string what;  ///< meaning and unit, for readers of the data
 };
 
 /// A text, a number or null, as the columns say.

@@ -1,6 +1,7 @@
 /// How much memory there is to be had, so that what asks for more is refused before it begins.
 ///
-/// Linux grants more memory than it has and kills the process that touches it, so that a failed allocation alone does not tell.
+/// Linux grants more memory than it has and kills the process that touches it, so that a failed allocation alone does
+/// not tell.
 #pragma once
 
 #include <cstddef>

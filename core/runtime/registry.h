@@ -1,7 +1,8 @@
 /// Engines by name, with what they can do.
 ///
 /// The library of an engine adds it (`add_engines(registry)` in its namespace), and a program adds up the libraries
-/// that it links. Code that offers a choice of engines, or asks what one can do, asks a registry: no second list exists.
+/// that it links. Code that offers a choice of engines, or asks what one can do, asks a registry: no second list
+/// exists.
 #pragma once
 
 #include <any>

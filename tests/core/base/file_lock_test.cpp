@@ -40,7 +40,7 @@ TEST(FileLock, KeepsOthersOutWhileTheFileComesAndIsReplaced) {
         EXPECT_TRUE(is_free(folder / "b.sums"));
     }
     EXPECT_TRUE(is_free(path));
-    EXPECT_EQ(folder.entry_count(), 1);  // and leaves nothing behind
+    EXPECT_EQ(entry_count(folder), 1);  // and leaves nothing behind
 }
 
 TEST(FileLock, IsOneForAllLinksToAFile) {
@@ -69,7 +69,7 @@ TEST(FileLock, EndsWithAProcessThatIsKilled) {
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
     EXPECT_TRUE(is_free(path));
-    EXPECT_EQ(folder.entry_count(), 0);
+    EXPECT_EQ(entry_count(folder), 0);
     ::close(ready[0]);
     ::close(ready[1]);
 }

@@ -49,7 +49,7 @@ TEST(OutputFile, KeepsTheModeOwnerAndGroupOfTheOldFile) {
         EXPECT_EQ(status.st_gid, is_given ? kNobody : ::getegid());
         EXPECT_EQ(file_text(folder / "a.txt"), "new");
     }
-    EXPECT_EQ(folder.entry_count(), 1);
+    EXPECT_EQ(entry_count(folder), 1);
 }
 
 /// Where a user may write to a file but not replace it.
@@ -81,7 +81,7 @@ TEST(OutputFile, IsWrittenInPlaceWhereTheFolderForbidsToReplaceIt) {
         EXPECT_EQ(status_of(folder / name).st_uid, kSomebody);
         EXPECT_EQ(status_of(folder / name).st_mode & 0777U, 0666U);
     }
-    EXPECT_EQ(folder.entry_count(), 3);
+    EXPECT_EQ(entry_count(folder), 3);
     EXPECT_EQ(std::distance(fs::directory_iterator(folder / "sticky"), fs::directory_iterator()), 1);
 }
 
@@ -103,7 +103,7 @@ TEST(OutputFile, IsWrittenInPlaceWhereItIsAMountPoint) {
     if (failures == kMayNotMount) GTEST_SKIP() << "may not mount";
     EXPECT_EQ(failures, 0);
     EXPECT_EQ(file_text(folder / "real.txt"), "new");
-    EXPECT_EQ(folder.entry_count(), 2);
+    EXPECT_EQ(entry_count(folder), 2);
 }
 
 TEST(OutputFile, IsKeptBesideAndNamedWhereItCannotTakeItsPlace) {
@@ -149,7 +149,7 @@ TEST(OutputFile, AFullDiskLeavesTheOldFileAndNoTemporary) {
     });
     EXPECT_EQ(failures, 0);
     EXPECT_EQ(file_text(folder / "a.txt"), "old");
-    EXPECT_EQ(folder.entry_count(), 1);
+    EXPECT_EQ(entry_count(folder), 1);
 }
 
 TEST(OutputFile, AFullDeviceIsReportedByName) {

@@ -30,7 +30,7 @@ TEST(OutputFile, HoldsExactlyWhatWasWritten) {
     EXPECT_EQ(file_text(folder / "new.txt"), "short");
     write_text(folder / "empty.txt", "");
     EXPECT_EQ(fs::file_size(folder / "empty.txt"), 0U);
-    EXPECT_EQ(folder.entry_count(), 2);
+    EXPECT_EQ(entry_count(folder), 2);
 }
 
 TEST(OutputFile, FollowsTheUmaskLikeAnyOtherFile) {
@@ -79,7 +79,7 @@ TEST(OutputFile, FollowsALinkThatLeadsToNoFileYet) {
     }
     fs::create_symlink("loop.txt", folder / "loop.txt");
     EXPECT_NE(error_of([&] { write_text(folder / "loop.txt", "new"); }), "");
-    EXPECT_EQ(folder.entry_count(), 5);
+    EXPECT_EQ(entry_count(folder), 5);
 }
 
 TEST(OutputFile, KeepsAllNamesOfAFile) {
@@ -89,7 +89,7 @@ TEST(OutputFile, KeepsAllNamesOfAFile) {
     write_text(folder / "a.txt", "new");
     EXPECT_EQ(file_text(folder / "b.txt"), "new");
     EXPECT_EQ(fs::hard_link_count(folder / "a.txt"), 2U);
-    EXPECT_EQ(folder.entry_count(), 2);
+    EXPECT_EQ(entry_count(folder), 2);
 }
 
 TEST(OutputFile, WritesIntoDevicesAndPipesWithoutReplacingThem) {
@@ -140,7 +140,7 @@ TEST(OutputFile, RefusesFoldersAndPlacesInFoldersThatAreNotThere) {
         EXPECT_EQ(error_of([&] { check_writable(refused.path); }), refused.expected);
         EXPECT_EQ(error_of([&] { write_text(refused.path, "new"); }), refused.expected);
     }
-    EXPECT_EQ(folder.entry_count(), 1);
+    EXPECT_EQ(entry_count(folder), 1);
     EXPECT_EQ(file_text(folder / "file"), "old");
 }
 
@@ -153,7 +153,7 @@ TEST(OutputFile, CheckingAheadChangesNothing) {
     check_writable("/dev/null");
     EXPECT_EQ(file_text(folder / "old.txt"), "old");
     EXPECT_EQ(fs::last_write_time(folder / "old.txt"), modified);
-    EXPECT_EQ(folder.entry_count(), 1);
+    EXPECT_EQ(entry_count(folder), 1);
 }
 
 TEST(OutputFile, ReadersSeeTheOldContentOrTheNewNeverAPart) {

@@ -134,7 +134,8 @@ TEST(ImageFile, ClaimedDimensionsAreRefusedBeforeMemoryIsSpentOnThem) {
     std::string long_attribute = exr;
     std::memcpy(long_attribute.data() + window - 4, &kMax, 4);
     add("long.exr", long_attribute);
-    // OpenEXR finds the end of the channel list by itself; a reader that trusts its size of 0 never sees the data window.
+    // OpenEXR finds the end of the channel list by itself; a reader that trusts its size of 0 never sees the data
+    // window.
     std::string lost_window = exr;
     const std::array<std::int32_t, 4> wide{0, 0, 9'999'999, 63};
     std::memcpy(lost_window.data() + window, &wide, sizeof wide);
