@@ -42,7 +42,7 @@ void render_paper(benchmark::State& state, const Engine& engine, int threads) {
     if (!agree(state, framebuffer.hash() == expected_hash(), "the image differs from the recursive engine's")) return;
     for (auto _ : state) report = engine.render(paper_scene(), settings, framebuffer);
 
-    count_rays(state, report.segments(), static_cast<double>(report.record_bytes));
+    count_rays(state, report.segments(), static_cast<double>(wavefront::pool_report(report).record_bytes));
     state.counters["paths/s"] =
         benchmark::Counter(static_cast<double>(report.paths()), benchmark::Counter::kIsIterationInvariantRate);
 }

@@ -111,8 +111,8 @@ void print_table(const std::vector<Contender>& list) {
         const studies::Spread ratio = studies::spread(contender.ratio);
         print("{:<14} {:>9.2f} {:>6.2f} ({:>5.2f} to {:>5.2f}) {:>9.3f} {:>6.1f} % {:>7} {:>6.2f} MB  {}\n",
               contender.name, rate.median, ratio.median, ratio.low, ratio.high, load_imbalance(contender.last),
-              100 * studies::waiting(contender.last), contender.last.record_bytes,
-              static_cast<double>(contender.last.pool_bytes) / (1024 * 1024), contender.hash);
+              100 * studies::waiting(contender.last), wavefront::pool_report(contender.last).record_bytes,
+              static_cast<double>(contender.last.memory_bytes) / (1024 * 1024), contender.hash);
     }
     print("not timed, of any engine: the scene's reading and its tables, the framebuffer's making and its hash\n");
 }
@@ -131,8 +131,8 @@ nlohmann::json table_json(const std::vector<Contender>& list) {
                         {"load_max_over_mean", load_imbalance(contender.last)},
                         {"waiting", studies::waiting(contender.last)},
                         {"setup_s", contender.last.setup_s},
-                        {"record_bytes", contender.last.record_bytes},
-                        {"pool_bytes", contender.last.pool_bytes},
+                        {"record_bytes", wavefront::pool_report(contender.last).record_bytes},
+                        {"pool_bytes", contender.last.memory_bytes},
                         {"pool", contender.pool}});
     }
     return rows;

@@ -7,6 +7,7 @@
 #include "cli/print.h"
 #include "core/film/light_range.h"
 #include "core/runtime/trace.h"
+#include "wavefront/pool_report.h"
 
 namespace raypool::cli {
 
@@ -71,9 +72,9 @@ void print_summary(const RenderRecord& record) {
               : fmt::format("schedule {}", to_string(settings.schedule)));
     print_work(settings, report);
     if (record.target_error > 0) print_error(record);
-    if (report.pool_bytes > 0)
-        print("ray record of {} bytes; pools of {} records, at most {:.2f} MB\n", report.record_bytes, report.pool_rays,
-              static_cast<double>(report.pool_bytes) / (1024 * 1024));
+    if (const wavefront::PoolReport& pool = wavefront::pool_report(report); pool.pool_rays > 0)
+        print("ray record of {} bytes; pools of {} records, at most {:.2f} MB\n", pool.record_bytes, pool.pool_rays,
+              static_cast<double>(report.memory_bytes) / (1024 * 1024));
     if (record.truncation_bound > 0)
         print("depth {} cuts off a radiance of at most {:.3g} a pixel\n", settings.depth, record.truncation_bound);
     print_step(record);

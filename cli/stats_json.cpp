@@ -7,6 +7,7 @@
 #include "cli/engines.h"
 #include "cli/pool_options.h"
 #include "core/runtime/environment.h"
+#include "wavefront/pool_report.h"
 
 namespace raypool::cli {
 
@@ -47,6 +48,7 @@ json settings_json(const RenderRecord& record) {
 
 json stats_json(const RenderRecord& record) {
     const RenderReport& report = record.report;
+    const wavefront::PoolReport& pool = wavefront::pool_report(report);
     const auto paths = static_cast<double>(report.paths());
     const auto segments = static_cast<double>(report.segments());
     const auto ratio = [](double a, double b) { return b == 0 ? json() : json(a / b); };  // of nothing there is none
@@ -64,17 +66,18 @@ json stats_json(const RenderRecord& record) {
         threads.push_back(thread);
     }
     json rounds = json::array();
-    for (const RoundReport& work : report.rounds) {
+    for (const wavefront::RoundReport& work : pool.rounds) {
         json round{{"records_in", work.records_in},
                    {"records_out", work.records_out},
                    {"lanes", work.lanes},
                    {"wait_s", work.wait_s}};
-        for (std::size_t i = 0; i < kStageCount; ++i) round["stage_s"][kStageNames[i]] = work.stage_s[i];
+        for (std::size_t i = 0; i < wavefront::kStageCount; ++i)
+            round["stage_s"][wavefront::kStageNames[i]] = work.stage_s[i];
         rounds.push_back(round);
     }
     json lists = json::array();
-    for (const ListLevel& level : report.lists) {
-        if (level.lists == 0) break;  // the tree goes no deeper
+    for (const wavefront::ListLevel& level : pool.lists) {
+        if (level.lists == 0 || !record.ranks.empty()) break;  // the tree goes no deeper; one rank's are not all
         lists.push_back(
             {{"lists", level.lists}, {"rays", level.rays}, {"single_rays", level.single_rays}, {"lanes", level.lanes}});
     }
@@ -125,9 +128,9 @@ json stats_json(const RenderRecord& record) {
                                   {"busy_s", busy_s}});
     }
     if (engines().find(record.engine).has_pool) {
-        stats["record_bytes"] = report.record_bytes;
-        stats["pool_rays"] = report.pool_rays;
-        stats["pool_bytes"] = report.pool_bytes;
+        stats["record_bytes"] = pool.record_bytes;
+        stats["pool_rays"] = pool.pool_rays;
+        stats["pool_bytes"] = report.memory_bytes;
         stats["rounds"] = rounds;
         stats["lists"] = lists;
     }

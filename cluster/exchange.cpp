@@ -21,9 +21,7 @@ struct ReportHead {
     double seconds;
     double setup_s;
     SampleStatistics statistics;
-    std::size_t record_bytes;
-    std::size_t pool_rays;
-    std::size_t pool_bytes;
+    std::size_t memory_bytes;
 };
 static_assert(std::is_trivially_copyable_v<ReportHead> && std::is_trivially_copyable_v<ThreadReport>);
 
@@ -73,7 +71,7 @@ void broadcast(Ranks& ranks, Checkpoint& sums) {
 }
 
 std::vector<RenderReport> gather(Ranks& ranks, const RenderReport& own) {
-    const ReportHead head{own.seconds, own.setup_s, own.statistics, own.record_bytes, own.pool_rays, own.pool_bytes};
+    const ReportHead head{own.seconds, own.setup_s, own.statistics, own.memory_bytes};
     std::vector<std::byte> bytes(sizeof(head) + own.threads.size() * sizeof(ThreadReport));
     std::memcpy(bytes.data(), &head, sizeof(head));
     std::memcpy(bytes.data() + sizeof(head), own.threads.data(), bytes.size() - sizeof(head));
@@ -85,12 +83,11 @@ std::vector<RenderReport> gather(Ranks& ranks, const RenderReport& own) {
         report.seconds = other.seconds;
         report.setup_s = other.setup_s;
         report.statistics = other.statistics;
-        report.record_bytes = other.record_bytes;
-        report.pool_rays = other.pool_rays;
-        report.pool_bytes = other.pool_bytes;
+        report.memory_bytes = other.memory_bytes;
         report.threads.resize((told.size() - sizeof(other)) / sizeof(ThreadReport));
         std::memcpy(report.threads.data(), told.data() + sizeof(other), told.size() - sizeof(other));
     }
+    if (!reports.empty()) reports.front().engine = own.engine;  // the first rank's, which alone is told
     return reports;
 }
 
@@ -100,9 +97,8 @@ RenderReport joined(const std::vector<RenderReport>& ranks) {
         all.seconds = std::max(all.seconds, rank.seconds);
         all.setup_s = std::max(all.setup_s, rank.setup_s);
         all.statistics.add(rank.statistics);
-        all.record_bytes = std::max(all.record_bytes, rank.record_bytes);
-        all.pool_rays = std::max(all.pool_rays, rank.pool_rays);
-        all.pool_bytes += rank.pool_bytes;
+        all.memory_bytes += rank.memory_bytes;
+        if (all.engine == nullptr) all.engine = rank.engine;
         all.threads.insert(all.threads.end(), rank.threads.begin(), rank.threads.end());
     }
     for (ThreadReport& thread : all.threads) thread.wait_s = std::max(0.0, all.seconds - all.setup_s - thread.busy_s);

@@ -7,6 +7,7 @@
 
 #include "core/runtime/engine.h"
 #include "core/runtime/registry.h"
+#include "wavefront/pool_report.h"
 #include "wavefront/settings.h"
 
 namespace raypool::wavefront {

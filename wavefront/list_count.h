@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/geometry/traverse.h"
-#include "core/runtime/engine.h"
+#include "wavefront/pool_report.h"
 
 namespace raypool::wavefront {
 

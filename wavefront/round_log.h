@@ -10,8 +10,9 @@
 
 #include <vector>
 
-#include "core/runtime/engine.h"
+#include "core/runtime/settings.h"
 #include "core/runtime/trace.h"
+#include "wavefront/pool_report.h"
 
 namespace raypool::wavefront {
 

@@ -18,6 +18,7 @@
 #include "core/runtime/loop.h"
 #include "wavefront/accumulator.h"
 #include "wavefront/capacity.h"
+#include "wavefront/pool_report.h"
 #include "wavefront/record_stages.h"
 #include "wavefront/stream.h"
 
@@ -34,8 +35,10 @@ class PoolSession : public RenderSession {
           framebuffer_(framebuffer),
           context_{scene,  settings_, pool_, random_seed(settings.seed, settings.sampler), framebuffer.fixed_point(),
                    nullptr} {
-        report_.record_bytes = record_bytes;
-        report_.pool_rays = capacity();
+        const auto own = std::make_shared<PoolReport>();
+        own->record_bytes = record_bytes;
+        own->pool_rays = capacity();
+        report_.engine = own;
     }
 
   protected:
@@ -55,8 +58,8 @@ class PoolSession : public RenderSession {
     /// Refuses `pool_bytes` for pools and stages, and what the accumulator takes, where there is not as much; where
     /// there is, makes the accumulator. Refuses streams of so many rays that pairs of them with shapes have no numbers.
     void take_memory(std::size_t pool_bytes, std::size_t stream_rays) {
-        report_.pool_bytes = pool_bytes + accumulator_bytes(pool_.accumulator, framebuffer_, settings_.threads);
-        check_available(report_.pool_bytes,
+        report_.memory_bytes = pool_bytes + accumulator_bytes(pool_.accumulator, framebuffer_, settings_.threads);
+        check_available(report_.memory_bytes,
                         "--pool-rays, --threads, --accumulator: the pools, the stages' memory and the accumulator");
         if (pool_.intersection != Intersection::Single && stream_rays > RayStream<Scalar>::kMostRays)
             throw InputError(fmt::format("--pool-rays, --pool-batch: a stream has at most {} rays, got {}",
@@ -83,10 +86,12 @@ class PoolSession : public RenderSession {
     RenderReport render(const RenderUnit& unit) final {
         if (path_count(context_.scene, unit) == 0) return {};
         RenderReport report = run(unit);
+        const auto own = std::make_shared<PoolReport>();
         for (std::size_t thread = 0; thread < report.threads.size(); ++thread) {  // added up by their number
-            add_each<RoundReport>(report.rounds, rounds(thread));
-            add_each<ListLevel>(report.lists, lists(thread));
+            add_each<RoundReport>(own->rounds, rounds(thread));
+            add_each<ListLevel>(own->lists, lists(thread));
         }
+        report.engine = own;
         return report;
     }
 

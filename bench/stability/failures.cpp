@@ -14,13 +14,13 @@ namespace raypool::stability {
 
 namespace {
 
-/// In the order of NaiveVariant, from 1 on.
+/// In the order of NaiveVariant.
 constexpr const char* kVariantNames[] = {"least distance", "half-b", "truncation", "id alone"};
 
 NaiveVariant variant_named(const std::string& name) {
     const auto* const found = std::find(std::begin(kVariantNames), std::end(kVariantNames), name);
     RAYPOOL_CHECK(found != std::end(kVariantNames), "failures.json names a variant that there is");
-    return static_cast<NaiveVariant>(1 + (found - std::begin(kVariantNames)));
+    return static_cast<NaiveVariant>(found - std::begin(kVariantNames));
 }
 
 Image render(const Scene& scene, const RenderSettings& settings, const auto& render_into, double max_radiance) {
@@ -45,12 +45,10 @@ const std::vector<Failure>& all_failures() {
 FailureImages render_failure(NaiveVariant variant, const Scene& scene, const RenderSettings& settings) {
     const CompiledScene<float> narrow = compile<float>(scene);
     const CompiledScene<double> wide = compile<double>(scene);
-    const bool is_id_alone = variant == NaiveVariant::IdAlone;
-    const CompiledScene<float> naive = is_id_alone ? compile<float>(scene, no_coincidence(scene)) : narrow;
     const recursive::IterativeEngine engine;
     const double most = narrow.max_radiance;
     return {render(
-                scene, settings, [&](Framebuffer& f) { render_naively(variant, naive, settings, f); }, most),
+                scene, settings, [&](Framebuffer& f) { render_naively(variant, scene, settings, f); }, most),
             render(
                 scene, settings, [&](Framebuffer& f) { engine.render(narrow, settings, f); }, most),
             render(

@@ -11,17 +11,16 @@
 
 namespace raypool::stability {
 
-/// A variant of the kernels (core/geometry/methods.h) with one naive method in the place of ours.
+/// One naive method in the place of ours.
 enum class NaiveVariant : std::uint8_t {
-    LeastDistance = 1,  ///< a hit closer than 1e-3 does not count, and a ray does not know what it leaves
-    HalfB = 2,          ///< the quadratic of the books
-    Truncation = 3,     ///< checkers by rounding towards zero
-    IdAlone = 4         ///< methods are ours, but no shapes are held to coincide: a ray leaves one shape, by its id
+    LeastDistance,  ///< a hit closer than 1e-3 does not count, and a ray does not know what it leaves
+    HalfB,          ///< the quadratic of the books
+    Truncation,     ///< checkers by rounding towards zero
+    IdAlone         ///< methods are ours, but no shapes are held to coincide: a ray leaves one shape, by its id
 };
 
-/// The iterative engine in single precision, compiled for a variant and for what the scenes below need.
-RenderReport render_naively(NaiveVariant variant, const CompiledScene<float>& scene, const RenderSettings& settings,
-                            Framebuffer& framebuffer);
+/// Adds the settings' samples, of independent numbers, in single precision, one path after the other.
+void render_naively(NaiveVariant variant, const Scene& scene, const RenderSettings& settings, Framebuffer& framebuffer);
 
 struct Failure {
     std::string id;  ///< the picture's name; scripts/analysis/stability.py says what to see
@@ -32,7 +31,7 @@ struct Failure {
 /// The entries of failures.json, whose scenes are written as docs/scene-format.md says.
 const std::vector<Failure>& all_failures();
 
-/// One scene three times: by the naive variant, by the engine in float, and by the engine in double.
+/// One scene three times: by the naive method, by the engine in float, and by the engine in double.
 struct FailureImages {
     Image naive, ours, reference;
 };

@@ -90,7 +90,8 @@ double in_our_pool(int splits) {
     Framebuffer framebuffer(kScene.width, kScene.height, FixedPoint::make(4, kScene.max_radiance));
     const RenderReport report = wavefront::WavefrontEngine(pool).render(kScene, settings, framebuffer);
     std::int64_t most = 0;
-    for (const RoundReport& round : report.rounds) most = std::max({most, round.records_in, round.records_out});
+    for (const wavefront::RoundReport& round : wavefront::pool_report(report).rounds)
+        most = std::max({most, round.records_in, round.records_out});
     return share(most, kBatch);
 }
 constexpr auto kMostRecords = []<class>(const auto& records, double splits, std::int64_t) {

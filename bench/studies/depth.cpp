@@ -126,7 +126,7 @@ Case timed_case(const char* kind, const NamedEngine& engine, const std::shared_p
             row = row + Cells{{"paths", report.paths()},   {"segments", report.segments()},
                               {"seconds", report.seconds}, {"ns_per_segment", ns_per_segment(report, settings.threads)},
                               {"outcome", kRendered},      {"hash", measured.hash}};
-            if (report.pool_bytes != 0) row.emplace_back("pool_bytes", report.pool_bytes);
+            if (report.memory_bytes != 0) row.emplace_back("pool_bytes", report.memory_bytes);
         } catch (const InputError& refusal) {
             row = row + Cells{{"outcome", kRefused}, {"refusal", refusal.what()}};
         }

@@ -11,6 +11,7 @@
 #include "bench/studies/statistics.h"
 #include "core/runtime/settings_text.h"
 #include "wavefront/ladder.h"
+#include "wavefront/pool_report.h"
 
 #ifdef RAYPOOL_HAS_EMBREE
 #include "bench/peers/embree_engine.h"
@@ -20,10 +21,14 @@ namespace raypool::studies {
 
 namespace {
 
+using wavefront::pool_report;
+using wavefront::RoundReport;
+using wavefront::Stage;
+
 /// Seconds of a stage, all threads and rounds.
 double stage_s(const RenderReport& report, Stage stage) {
     double sum = 0;
-    for (const RoundReport& round : report.rounds) sum += round.stage_s[static_cast<std::size_t>(stage)];
+    for (const RoundReport& round : pool_report(report).rounds) sum += round.stage_s[static_cast<std::size_t>(stage)];
     return sum;
 }
 
@@ -32,7 +37,7 @@ Cells parts_of_pool(const RenderReport& report, const Features& features, const 
     double records_in = 0;
     double records_out = 0;
     double barrier_s = 0;
-    for (const RoundReport& round : report.rounds) {
+    for (const RoundReport& round : pool_report(report).rounds) {
         records_in += static_cast<double>(round.records_in);
         records_out += static_cast<double>(round.records_out);
         barrier_s += round.wait_s;

@@ -9,15 +9,18 @@
 #include "bench/studies/renders.h"
 #include "core/runtime/settings_text.h"
 #include "wavefront/ladder.h"
+#include "wavefront/pool_report.h"
 #include "wavefront/setting_names.h"
 
 namespace raypool::studies {
 
 namespace {
 
+using wavefront::pool_report;
 using wavefront::PoolScope;
 using wavefront::PoolSettings;
 using wavefront::Refill;
+using wavefront::RoundReport;
 using wavefront::Sort;
 
 constexpr const char* kPaperPool = "the paper's pool";
@@ -85,7 +88,7 @@ Case rounds_case(const Line& line, const std::shared_ptr<const StudyScene>& scen
         std::vector<Cells> rows;
         std::int64_t round = 0;
         std::int64_t depth = 0;
-        for (const RoundReport& work : measured.report.rounds) {
+        for (const RoundReport& work : pool_report(measured.report).rounds) {
             depth = work.records_in == 0 ? 0 : depth + 1;
             ++round;
             if (work.records_in == 0) continue;

@@ -13,6 +13,7 @@
 #include "core/runtime/settings_text.h"
 #include "core/scene/scene_reader.h"
 #include "wavefront/capacity.h"
+#include "wavefront/pool_report.h"
 
 namespace raypool::studies {
 
@@ -77,7 +78,7 @@ Cells sized_cells(const std::string& way_text, const SizedWay& way, SizedScene& 
                  {"shapes", scene.shapes()},
                  {"depth", settings.depth},
                  {"way", way_text},
-                 {"capacity", way.pool ? Value(report.pool_rays) : Value()},
+                 {"capacity", way.pool ? Value(wavefront::pool_report(report).pool_rays) : Value()},
                  {"tree_bytes", wavefront::tree_bytes(scene.get().compiled)},
                  {"segments", report.segments()},
                  {"ns_per_segment", ns_per_segment(report, settings.threads)}};
@@ -154,7 +155,7 @@ Case list_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, Re
     const auto run = [way, scene, settings]() -> std::vector<Cells> {
         const Measured measured = measure(way, *scene, settings);
         std::vector<Cells> rows;
-        for (const ListLevel& level : measured.report.lists) {
+        for (const wavefront::ListLevel& level : wavefront::pool_report(measured.report).lists) {
             if (level.lists == 0) break;
             rows.push_back(sized_cells(fmt::format("{}, {}", kLists, way.name), way, *scene, settings, measured) +
                            Cells{{"level", rows.size()},

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "core/geometry/shape_tables.h"
-#include "core/geometry/sphere_method.h"
+#include "core/geometry/shapes.h"
 #include "core/scene/features.h"
 
 namespace raypool {
@@ -161,8 +161,8 @@ requires requires(Block b) {
 RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& ray, Hit<ScalarOf<Real>>& hit) {
     Vec3<Real> center = load<Real>(block.center);
     if constexpr (features.motion) center = center_at<Real>(center, load<Real>(block.motion), ray.time);
-    const Real t = SphereMethod<features.variant>::template distance<Real>(
-        ray.origin, ray.direction, center, load<Real>(block.radius), is_leaving<Real>(block.id, ray.leaving_id));
+    const Real t = sphere_distance<Real>(ray.origin, ray.direction, center, load<Real>(block.radius),
+                                         is_leaving<Real>(block.id, ray.leaving_id));
     Mask<Real> is_closer = t <= Real(hit.t) && t < Real(kInfinity<Real>);
     if (none(is_closer)) return;
     if constexpr (in_box == InBox::Yes) {

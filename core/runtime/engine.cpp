@@ -10,12 +10,15 @@ void RenderReport::add(const RenderReport& later) {
     seconds += later.seconds;
     setup_s += later.setup_s;
     add_each<ThreadReport>(threads, later.threads);
-    add_each<ListLevel>(lists, later.lists);
     statistics.add(later.statistics);
-    rounds.insert(rounds.end(), later.rounds.begin(), later.rounds.end());
-    record_bytes = std::max(record_bytes, later.record_bytes);
-    pool_rays = std::max(pool_rays, later.pool_rays);
-    pool_bytes = std::max(pool_bytes, later.pool_bytes);
+    memory_bytes = std::max(memory_bytes, later.memory_bytes);
+    if (later.engine == nullptr) return;
+    if (engine == nullptr) {
+        engine = later.engine;
+    } else {
+        if (engine.use_count() > 1) engine = engine->copy();
+        engine->add(*later.engine);
+    }
 }
 
 RenderReport render_whole(RenderSession& session, const RenderSettings& settings) {

@@ -1,113 +1,21 @@
-/// What every engine is asked and what it answers: RenderSettings, RenderSession, RenderReport, Engine.
+/// What every engine is asked: RenderSettings, RenderSession, Engine. What it answers is in report.h.
 ///
 /// An engine owns the order of the work and nothing else; all physics is in core/. For one scene, precision, seed,
 /// depth and sample range, every engine and every setting of the loop makes the same sums.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/film/framebuffer.h"
+#include "core/runtime/report.h"
 #include "core/runtime/settings.h"
 #include "core/shading/compiled_scene.h"
 
 namespace raypool {
-
-/// The stages of a round of a wavefront engine. Append is the traffic of records from round to round: what survivors
-/// and split records take to reach their places.
-enum class Stage : std::uint8_t { Generate, Intersect, Sort, Shade, Accumulate, Append };
-inline constexpr std::size_t kStageCount = 6;
-inline constexpr std::array<const char*, kStageCount> kStageNames{"generate", "intersect",  "sort",
-                                                                  "shade",    "accumulate", "append"};
-
-/// One round of a wavefront engine: all threads, or, of per-thread pools, the rounds of that number added up.
-struct RoundReport {
-    std::int64_t records_in = 0;                ///< advanced by one bounce
-    std::int64_t records_out = 0;               ///< of these, alive afterwards
-    std::int64_t lanes = 0;                     ///< used for them: records_in / lanes is the occupancy of the registers
-    std::array<double, kStageCount> stage_s{};  ///< added over threads
-    double wait_s = 0;                          ///< at barriers, added over threads
-
-    void add(const RoundReport& other) {
-        records_in += other.records_in;
-        records_out += other.records_out;
-        lanes += other.lanes;
-        for (std::size_t i = 0; i < kStageCount; ++i) stage_s[i] += other.stage_s[i];
-        wait_s += other.wait_s;
-    }
-};
-
-/// The lists of rays that a wavefront engine took to the nodes and leaves of one level of its trees.
-struct ListLevel {
-    std::int64_t lists = 0;
-    std::int64_t rays = 0;         ///< in all of them; a ray is in as many as it entered nodes and leaves
-    std::int64_t single_rays = 0;  ///< of these, in lists so short that their rays went on one by one, out of all lists
-    std::int64_t lanes = 0;        ///< of registers, for the others: (rays - single_rays) / lanes is how full they were
-
-    void add(const ListLevel& other) {
-        lists += other.lists;
-        rays += other.rays;
-        single_rays += other.single_rays;
-        lanes += other.lanes;
-    }
-};
-
-/// What one thread did. A cache line each, so that counting does not make threads wait for each other.
-struct alignas(64) ThreadReport {
-    std::int64_t paths = 0;
-    std::int64_t segments = 0;         ///< rays traced, camera rays included
-    std::int64_t box_tests = 0;        ///< with count_work
-    std::int64_t primitive_tests = 0;  ///< with count_work
-    double busy_s = 0;                 ///< working
-    double processor_s = 0;            ///< on a processor meanwhile; what waits by spinning at barriers is on one too
-    double wait_s = 0;                 ///< waiting for the others
-
-    void add(const ThreadReport& later) {
-        paths += later.paths;
-        segments += later.segments;
-        box_tests += later.box_tests;
-        primitive_tests += later.primitive_tests;
-        busy_s += later.busy_s;
-        processor_s += later.processor_s;
-        wait_s += later.wait_s;
-    }
-};
-
-/// Adds figures to those of the same place, where there are none yet to nothing.
-template <class T>
-void add_each(std::vector<T>& sums, std::span<const T> later) {
-    if (sums.size() < later.size()) sums.resize(later.size());
-    for (std::size_t i = 0; i < later.size(); ++i) sums[i].add(later[i]);
-}
-
-struct RenderReport {
-    /// Wall clock of all that an engine does for a render: setup_s, the parallel loops, and what brings sums that were
-    /// kept elsewhere into the framebuffer. Of these, threads are busy or wait in all but setup_s.
-    double seconds = 0;
-    double setup_s = 0;  ///< of checking the stack, and of making pools, the stages' memory and accumulators
-    std::vector<ThreadReport> threads;
-    SampleStatistics statistics;
-    std::vector<RoundReport> rounds;  ///< of a wavefront engine, with log_rounds or a trace
-    std::vector<ListLevel> lists;     ///< of a wavefront engine, with count_work: by level, the root first
-    std::size_t record_bytes = 0;     ///< of a wavefront engine: moved in and out of the pool by a record
-    std::size_t pool_rays = 0;        ///< of a wavefront engine: records that each pool has room for
-    std::size_t pool_bytes = 0;       ///< of a wavefront engine: all pools, streams and accumulators at their largest
-
-    /// Takes in a later render into the same framebuffer.
-    void add(const RenderReport& later);
-    [[nodiscard]] std::int64_t paths() const { return total(&ThreadReport::paths); }
-    [[nodiscard]] std::int64_t segments() const { return total(&ThreadReport::segments); }
-    [[nodiscard]] std::int64_t total(std::int64_t ThreadReport::*figure) const {
-        std::int64_t sum = 0;
-        for (const ThreadReport& thread : threads) sum += thread.*figure;
-        return sum;
-    }
-};
 
 /// What is rendered at a time: samples [first_sample, end_sample) of some pixels, in rising order; of all where null.
 struct RenderUnit {

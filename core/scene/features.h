@@ -25,8 +25,6 @@ struct Features {
     bool checker = false;     ///< 3-D checkers
     bool uv = false;          ///< textures that need surface coordinates: uv checkers and images
 
-    std::uint8_t variant = 0;  ///< not a feature: the methods that kernels use (sphere_method.h); 0 in every engine
-
     bool operator==(const Features&) const = default;
 };
 

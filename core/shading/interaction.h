@@ -3,7 +3,6 @@
 #pragma once
 
 #include "core/geometry/shapes.h"
-#include "core/shading/checker_method.h"
 #include "core/shading/compiled_scene.h"
 #include "core/shading/textures.h"
 
@@ -119,9 +118,7 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const SceneView<ScalarOf<Real>>& scene,
             at = select<Real>(is_checker_uv, vec3<Real>(uv[0], uv[1], Real(0)), at);
             outward = select<Real>(is_checker_uv, zero, outward);
         }
-        const Mask<Real> is_odd = (is_checker_3d || is_checker_uv) &&
-                                  CheckerMethod<features.variant>::template is_odd<Real>(at, outward, scale);
-        colour = select<Real>(is_odd, odd, colour);
+        colour = select<Real>(is_checker && is_odd_cell<Real>(at, outward, scale), odd, colour);
     }
     if constexpr (features.uv) {
         for (unsigned bits = mask_bits(is_image); bits != 0; bits &= bits - 1) {

@@ -203,8 +203,8 @@ def summarise(run, rows):
         "Errors come from fixed seeds and are the same in every run on one machine. Costs are timed in a register of "
         "rays (spheres, checkers), one by one (boxes, glass), or a term or number at a time, all in the first-level "
         "cache.",
-        "The images of failure are made by the iterative engine, its kernels compiled with one naive method "
-        "(bench/stability/naive_engines.cpp); the same samples everywhere, so differences are not noise."]
+        "The images of failure are made by the engines' kernels in a plain loop, with one naive method in the place of "
+        "ours (bench/stability/naive_tracer.cpp); the same samples everywhere, so differences are not noise."]
     return summary
 
 

@@ -6,6 +6,7 @@
 #include "bench/studies/plain_scene.h"
 #include "core/base/error.h"
 #include "tests/small_render.h"
+#include "wavefront/pool_report.h"
 
 namespace raypool::studies {
 namespace {
@@ -48,8 +49,9 @@ TEST(FeatureSets, MakeOneImageOfAPlainScene) {
                 return render_whole(*begin(scene, settings, framebuffer), settings);
             });
             EXPECT_EQ(got.hash(), expected) << kFeatureSets[i].name;
-            if (got.report.record_bytes != 0) {
-                EXPECT_EQ(got.report.record_bytes, ray_record_bytes(kFeatureSets[i].features, sizeof(float)));
+            if (wavefront::pool_report(got.report).record_bytes != 0) {
+                EXPECT_EQ(wavefront::pool_report(got.report).record_bytes,
+                          ray_record_bytes(kFeatureSets[i].features, sizeof(float)));
             }
         }
     }

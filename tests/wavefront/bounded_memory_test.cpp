@@ -31,9 +31,10 @@ TEST(DeepPaths, EndInASmallPoolOfEitherScopeInTheMemoryOfShallowOnes) {
         const Rendered shallow = render_pool(scene, settings_of(1, 3), pool);
         const Rendered deep = render_pool(scene, settings_of(1, kDepth), pool);
         EXPECT_EQ(deep.report.segments(), std::int64_t{kDepth} * scene.pixel_count());
-        EXPECT_EQ(deep.report.pool_bytes, shallow.report.pool_bytes);
-        EXPECT_LT(deep.report.pool_bytes, 1U << 20U);
-        EXPECT_LE(deep.report.rounds.size(), 4096U) << "one figure for each round would grow with the depth";
+        EXPECT_EQ(deep.report.memory_bytes, shallow.report.memory_bytes);
+        EXPECT_LT(deep.report.memory_bytes, 1U << 20U);
+        EXPECT_LE(pool_report(deep.report).rounds.size(), 4096U)
+            << "one figure for each round would grow with the depth";
         const std::int64_t in_registers = pool.camera != CameraStage::Staged ? scene.pixel_count() : 0;
         EXPECT_EQ(sum(deep.report, &RoundReport::records_in), deep.report.segments() - in_registers);
     }
@@ -76,10 +77,11 @@ TEST_P(Splitting, MakesTheImageOfRecursionInMemoryThatDoesNotDependOnDepthOrSamp
         RenderSettings less = settings;
         less.depth = 2;
         less.end_sample = 1;
-        EXPECT_EQ(render_pool(scene, less, variant.pool).report.pool_bytes, got.report.pool_bytes);
+        EXPECT_EQ(render_pool(scene, less, variant.pool).report.memory_bytes, got.report.memory_bytes);
         const std::int64_t most = std::max(variant.pool.capacity, std::int64_t{1} << settings.split_depth);
         const bool is_shared = variant.pool.scope == PoolScope::Shared;
-        for (const RoundReport& round : got.report.rounds) EXPECT_LE(round.records_in, is_shared ? most : 2 * most);
+        for (const RoundReport& round : pool_report(got.report).rounds)
+            EXPECT_LE(round.records_in, is_shared ? most : 2 * most);
     }
 }
 INSTANTIATE_TEST_SUITE_P(Depths, Splitting, testing::Values(1, 2, 7));

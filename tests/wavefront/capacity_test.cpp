@@ -63,7 +63,7 @@ TEST(PoolCapacity, OfASessionIsReportedAndChangesNoBit) {
         const PoolSettings pool{.capacity = capacity};
         Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(2, scene.max_radiance));
         const RenderReport report = WavefrontEngine(pool).render(scene, settings, framebuffer);
-        EXPECT_EQ(report.pool_rays, static_cast<std::size_t>(pool_capacity(pool, scene)));
+        EXPECT_EQ(pool_report(report).pool_rays, static_cast<std::size_t>(pool_capacity(pool, scene)));
         if (expected.empty()) expected = framebuffer.hash();
         EXPECT_EQ(framebuffer.hash(), expected);
     }

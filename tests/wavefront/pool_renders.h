@@ -39,7 +39,7 @@ inline Rendered render_recursive(const CompiledScene<float>& scene, const Render
 
 inline std::int64_t sum(const RenderReport& report, std::int64_t RoundReport::*figure) {
     std::int64_t total = 0;
-    for (const RoundReport& round : report.rounds) total += round.*figure;
+    for (const RoundReport& round : pool_report(report).rounds) total += round.*figure;
     return total;
 }
 

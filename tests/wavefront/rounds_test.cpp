@@ -23,7 +23,7 @@ TEST_P(Report, CountsTheSegmentsOfRecursionAndItsRoundsAddUpToThem) {
             const std::int64_t in_registers = variant.pool.camera != CameraStage::Staged ? report.paths() : 0;
             EXPECT_EQ(sum(report, &RoundReport::records_in), report.segments() - in_registers);
             EXPECT_LE(sum(report, &RoundReport::records_out), sum(report, &RoundReport::records_in));
-            for (const RoundReport& round : report.rounds) {
+            for (const RoundReport& round : pool_report(report).rounds) {
                 EXPECT_LE(round.records_out, round.records_in);
                 EXPECT_GE(round.lanes, round.records_in);
                 if (variant.pool.width == StageWidth::Scalar) {
@@ -59,7 +59,7 @@ TEST_P(Report, CountsTheListsOfEachLevel) {
         RenderSettings settings = settings_of(2, 50, 2);
         settings.split_depth = split_depth;
         const RenderReport report = render_pool(scene, settings, pool).report;
-        const std::vector<ListLevel>& lists = report.lists;
+        const std::vector<ListLevel>& lists = pool_report(report).lists;
         ASSERT_FALSE(lists.empty());
         // Camera rays go down in beams; any other ray begins at the root of each tree.
         const std::int64_t trees = (scene.sphere_tree.nodes.empty() ? 0 : 1) + (scene.quad_tree.nodes.empty() ? 0 : 1);
@@ -80,14 +80,15 @@ TEST_P(Report, CountsTheListsOfEachLevel) {
         EXPECT_GT(entered, 0);
         EXPECT_LE(entered, report.total(&ThreadReport::box_tests));
     }
-    for (const ListLevel& level : render_pool(scene, settings_of(1, 50), shared_pool(300)).report.lists)
+    const Rendered singly = render_pool(scene, settings_of(1, 50), shared_pool(300));
+    for (const ListLevel& level : pool_report(singly.report).lists)
         EXPECT_EQ(level.lists, 0) << "of rays that are traced one by one";
 }
 
 TEST_P(Report, ShowsTheRoundsOfAPoolThatTakesAllPathsAtOnceAsTheBouncesOfAllPaths) {
     const CompiledScene<float> scene = compile<float>(small_scene(GetParam(), 24));
     const Rendered got = render_pool(scene, settings_of(2, 50, 2), shared_pool(2 * scene.pixel_count()));
-    const std::vector<RoundReport>& rounds = got.report.rounds;
+    const std::vector<RoundReport>& rounds = pool_report(got.report).rounds;
     ASSERT_GE(rounds.size(), 2U);
     ASSERT_LE(rounds.size(), 51U);
     EXPECT_EQ(rounds[0].records_in, 0) << "the first round only takes in camera paths";
@@ -118,11 +119,11 @@ TEST(RoundsReport, IsEmptyUnlessRoundsAreLogged) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 16));
     RenderSettings settings = settings_of(1, 50);
     settings.log_rounds = false;
-    EXPECT_TRUE(render_pool(scene, settings, shared_pool()).report.rounds.empty());
+    EXPECT_TRUE(pool_report(render_pool(scene, settings, shared_pool()).report).rounds.empty());
     settings.count_work = false;
     const Rendered got = render_pool(scene, settings, shared_pool());
-    EXPECT_TRUE(got.report.rounds.empty());
-    EXPECT_EQ(got.report.record_bytes, 56U);
+    EXPECT_TRUE(pool_report(got.report).rounds.empty());
+    EXPECT_EQ(pool_report(got.report).record_bytes, 56U);
     EXPECT_EQ(got.report.segments(), render_recursive(scene, settings).report.segments());
 }
 
@@ -149,7 +150,8 @@ TEST(RoundsReport, HasTimeInTheStagesThatRanAndInNoOther) {
             const RenderReport report = render_pool(scene, settings, variant.pool).report;
             const auto seconds = [&](Stage stage) {
                 double all = 0;
-                for (const RoundReport& round : report.rounds) all += round.stage_s[static_cast<std::size_t>(stage)];
+                for (const RoundReport& round : pool_report(report).rounds)
+                    all += round.stage_s[static_cast<std::size_t>(stage)];
                 return all;
             };
             for (const Stage stage : {Stage::Generate, Stage::Intersect, Stage::Shade, Stage::Accumulate})
@@ -158,7 +160,7 @@ TEST(RoundsReport, HasTimeInTheStagesThatRanAndInNoOther) {
             EXPECT_EQ(seconds(Stage::Append) > 0, variant.pool.scope == PoolScope::Shared || split_depth > 0);
             double all = 0;
             for (std::size_t i = 0; i < kStageCount; ++i) all += seconds(static_cast<Stage>(i));
-            for (const RoundReport& round : report.rounds) all += round.wait_s;
+            for (const RoundReport& round : pool_report(report).rounds) all += round.wait_s;
             EXPECT_LE(all, settings.threads * report.seconds) << "some time was counted twice";
         }
     }

@@ -151,10 +151,10 @@ TEST(Session, TakesTheMemoryOfOneRenderForAnyNumberOfUnits) {
     for (const NamedEngine& named : engines()) {
         Framebuffer framebuffer = empty_framebuffer(scene, 20);
         const auto session = named.engine->begin(scene, session_settings(20, 2), framebuffer);
-        const std::size_t before = session->report().pool_bytes;
+        const std::size_t before = session->report().memory_bytes;
         for (std::int64_t sample = 0; sample < 20; ++sample) session->add({sample, sample + 1, nullptr});
         session->merge();
-        EXPECT_EQ(session->report().pool_bytes, before) << named.name;
+        EXPECT_EQ(session->report().memory_bytes, before) << named.name;
     }
 }
 
@@ -164,7 +164,7 @@ TEST(PrefixSumAppend, TakesTheMemoryOfAPoolForEachThreadAndOneMore) {
         const PoolSettings pool{
             .scope = PoolScope::Shared, .append = append, .accumulator = Accumulator::AtomicInt64, .capacity = 1 << 16};
         Framebuffer framebuffer = empty_framebuffer(scene, 1);
-        return WavefrontEngine(pool).begin(scene, session_settings(1, threads), framebuffer)->report().pool_bytes;
+        return WavefrontEngine(pool).begin(scene, session_settings(1, threads), framebuffer)->report().memory_bytes;
     };
     const std::size_t one = pool_bytes(Append::Atomic, 3) - pool_bytes(Append::InPlace, 3);
     EXPECT_GE(one, (std::size_t{1} << 16) * 52);

@@ -42,7 +42,7 @@ TEST(PoolTrace, OfASharedPoolShowsRoundsStagesWaitingAndTheRecordsInThePool) {
         EXPECT_EQ(rendered.hash(), expected);
         expect_agreement(trace, rendered.report);
 
-        const std::vector<RoundReport>& rounds = rendered.report.rounds;
+        const std::vector<RoundReport>& rounds = pool_report(rendered.report).rounds;
         std::vector<std::int64_t> records_in(rounds.size());
         std::int64_t generated = 0;
         std::int64_t accumulated = 0;

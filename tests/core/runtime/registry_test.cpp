@@ -39,7 +39,7 @@ TEST(EngineRegistry, SaysWhatEnginesCanDoAsTheyDo) {
         RenderSettings settings;
         settings.log_rounds = true;
         const RenderReport report = render(*entry.make({}), scene, settings).report;
-        EXPECT_EQ(!report.rounds.empty(), entry.has_pool) << entry.name;
+        EXPECT_EQ(!wavefront::pool_report(report).rounds.empty(), entry.has_pool) << entry.name;
 
         CostImage cost(Cost::Segments, scene.width, scene.height);
         settings.cost_image = &cost;
@@ -62,7 +62,7 @@ TEST(EngineRegistry, HandsOptionsToTheEngineThatTheyAreFor) {
     pool.capacity = 77;
     const CompiledScene<float> scene = compile<float>(small_scene("cornell", 16));
     const std::unique_ptr<Engine> engine = all_engines().find("wavefront").make(pool);
-    EXPECT_EQ(render(*engine, scene, RenderSettings{}).report.pool_rays, 77U);
+    EXPECT_EQ(wavefront::pool_report(render(*engine, scene, RenderSettings{}).report).pool_rays, 77U);
 }
 
 TEST(EngineRegistryDeathTest, TakesNoNameTwiceAndFindsNoneThatIsNot) {
