@@ -5,6 +5,7 @@
 /// indices into the vectors below. Radiance and colours are linear RGB with the primaries of sRGB.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -51,6 +52,9 @@ struct Texture {
     Vector3d offset{0, 0, 0};  ///< Checker3d: cell boundaries lie where (p + offset) / scale is whole
     std::shared_ptr<const Image> image;  ///< Image only: values in [0, 1]; shared, since scenes are copied
     Wrap wrap = Wrap::ByShape;           ///< Image only
+
+    /// No channel is above it anywhere.
+    [[nodiscard]] double brightest() const { return image ? 1 : std::max(even.maxCoeff(), odd.maxCoeff()); }
 };
 
 struct Material {
@@ -61,6 +65,9 @@ struct Material {
         0;            ///< albedo in [0, 1] (Diffuse, Metal), radiance in [0, 1e6] (Emissive); unused by Dielectric
     double fuzz = 0;  ///< Metal: radius in [0, 1] of the sphere added to the mirrored direction
     double ior = 1;   ///< Dielectric: index of refraction inside over outside, in [0.1, 10]
+    /// Emissive: what the radiance of its texture is multiplied by, > 0; the product is in [0, 1e6].
+    double strength = 1;
+    bool front_only = false;  ///< Emissive: it shines from its outward side, and its other side is black
 };
 
 /// A sphere whose centre moves on a straight line: center0 at time 0, center1 at time 1 (equal for a still one).

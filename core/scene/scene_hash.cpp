@@ -49,8 +49,9 @@ class Hasher {
         if (image) add(wrap);
     }
     void add(const Material& material) {
-        const auto& [kind, texture_id, fuzz, ior] = material;
+        const auto& [kind, texture_id, fuzz, ior, strength, front_only] = material;
         add_all(kind, texture_id, fuzz, ior);
+        if (strength != 1 || front_only) add_all(strength, front_only);
     }
     void add(const Sphere& sphere) {
         const auto& [center0, center1, radius, material_id] = sphere;

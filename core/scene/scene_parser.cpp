@@ -199,7 +199,7 @@ class SceneReader {
             material.ior = object.required("ior").number(0.1, 10);
         } else if (type == "emissive") {
             material.kind = Kind::Emissive;
-            material.texture_id = texture_id(object.required("radiance"), kMaxRadiance);
+            read_emission(object, material);
         } else {
             material.kind = type == "metal" ? Kind::Metal : Kind::Diffuse;
             material.texture_id = texture_id(object.required("albedo"), 1);
@@ -209,6 +209,21 @@ class SceneReader {
         }
         object.refuse_unknown_keys();
         return material;
+    }
+
+    void read_emission(JsonObject& object, Material& material) {
+        material.texture_id = texture_id(object.required("radiance"), kMaxRadiance);
+        if (const auto strength = object.optional("strength")) {
+            material.strength = strength->number(1 / kMaxRadiance, kMaxRadiance);
+            const Texture& texture = scene_.textures[static_cast<std::size_t>(material.texture_id)];
+            const double brightest = material.strength * texture.brightest();
+            if (brightest > kMaxRadiance) {
+                strength->refuse(fmt::format("leave the radiance within [0, {:g}]", kMaxRadiance),
+                                 fmt::format("one that reaches {:g}", brightest));
+            }
+        }
+        if (const auto sides = object.optional("sides"))
+            material.front_only = sides->one_of({"both", "front"}) == "front";
     }
 
     /// A colour written in place, or a texture by its name.
@@ -222,10 +237,9 @@ class SceneReader {
         const auto named = texture_ids_.find(place.text());
         if (named == texture_ids_.end()) place.refuse("name a texture");
         const Texture& texture = scene_.textures[static_cast<std::size_t>(named->second)];
-        const double brightest = std::max(texture.even.maxCoeff(), texture.odd.maxCoeff());
-        if (brightest > max_component) {
+        if (texture.brightest() > max_component) {
             place.refuse(fmt::format("name a texture within [0, {:g}]", max_component),
-                         fmt::format("one that reaches {:g}", brightest));
+                         fmt::format("one that reaches {:g}", texture.brightest()));
         }
         return named->second;
     }

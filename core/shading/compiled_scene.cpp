@@ -119,13 +119,14 @@ class Compiler {
             return row;
         }
         const Texture& texture = scene_.textures[material.texture_id];
-        row.value[Row::kParameter] = static_cast<Scalar>(material.fuzz);
+        const bool is_emitter = material.kind == Material::Kind::Emissive;
+        row.value[Row::kParameter] =
+            static_cast<Scalar>(is_emitter ? (material.front_only ? -1 : 1) * material.strength : material.fuzz);
         for (int i = 0; i < 3; ++i) row.value[Row::kColour + i] = static_cast<Scalar>(texture.even[i]);
         const int repeat = texture.image ? image_repeat(texture.wrap, shape).number() : 0;
         set_code(static_cast<int>(texture.kind) + repeat, material.texture_id);
-        const double brightest = texture.image ? 1 : std::max(texture.even.maxCoeff(), texture.odd.maxCoeff());
-        double& most = material.kind == Material::Kind::Emissive ? max_radiance_ : max_albedo_;
-        most = std::max(most, brightest);
+        double& most = is_emitter ? max_radiance_ : max_albedo_;
+        most = std::max(most, texture.brightest() * (is_emitter ? material.strength : 1));
         return row;
     }
 

@@ -27,9 +27,10 @@ struct alignas(4 * sizeof(Scalar)) SurfaceRow {
         kCenter = 0,  ///< of a sphere at time 0, three; or the unit normal of a quad or plane
         kRadius = 3,  ///< of a sphere; of a quad or plane the PlanarMark of the group that a ray which leaves it leaves
         kMotion = 4,  ///< of the centre from time 0 to 1, three; or a point of the plane of a quad or plane
-        kParameter = 7,  ///< fuzz of metal, index of refraction of glass
-        kColour = 8,     ///< three: albedo or radiance; of a checker the even colour
-        kCode = 11,      ///< the bits of a SurfaceCode
+        kParameter =
+            7,  ///< fuzz of metal, index of refraction of glass, strength of an emitter, < 0 if only the front shines
+        kColour = 8,  ///< three: albedo or radiance; of a checker the even colour
+        kCode = 11,   ///< the bits of a SurfaceCode
         kColumns = 12
     };
     Scalar value[kColumns];

@@ -143,10 +143,14 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const SceneView<ScalarOf<Real>>& scene,
 template <Features features, class Real>
 struct SurfaceMaterial {
     Int<Real> kind;  ///< a Material::Kind
-    Real parameter;  ///< fuzz of metal, index of refraction of glass
+    Real parameter;  ///< SurfaceRow::kParameter
 
     [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_emitter() const {
         return features.emissive ? is(Material::Kind::Emissive) : Mask<Real>(false);
+    }
+    /// Of an emitter: what its colour is multiplied by, toward a ray that arrives at the front or at the back.
+    [[nodiscard]] RAYPOOL_INLINE Real emission(const Mask<Real>& is_front) const {
+        return select(is_front || parameter > Real(0), abs(parameter), Real(0));
     }
     [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_glass() const {
         return features.dielectric ? is(Material::Kind::Dielectric) : Mask<Real>(false);

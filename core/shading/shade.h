@@ -57,6 +57,12 @@ RAYPOOL_INLINE Scattered<Real> scatter(const SceneView<ScalarOf<Real>>& scene, c
     const Mask<Real> is_glass = material.is_glass();  // glass has no colour
     const Vec3<Real> colour = surface_colour<features, Real>(scene, point, primitive_id, row, code, !is_glass);
     for (int i = 0; i < 3; ++i) out.throughput[i] = select(is_glass, throughput[i], throughput[i] * colour[i]);
+    if constexpr (features.emissive) {
+        if (any(out.is_emitter)) {
+            const Real emission = select(out.is_emitter, material.emission(point.is_front), Real(1));
+            for (int i = 0; i < 3; ++i) out.throughput[i] = out.throughput[i] * emission;
+        }
+    }
 
     Mask<Real> may_split(false);
     if constexpr (splitting == Splitting::On) {

@@ -33,6 +33,11 @@ void expect_spot(const Scene& scene, double form_factor) {
 }
 
 template <class Scalar>
+void expect_black(const Scene& scene) {
+    for (const double value : pixel_values(render<Scalar>(scene, 1, 50))) ASSERT_EQ(value, 0);
+}
+
+template <class Scalar>
 class Irradiance : public testing::Test {};
 using Precisions = testing::Types<float, double>;
 TYPED_TEST_SUITE(Irradiance, Precisions);
@@ -76,6 +81,33 @@ TYPED_TEST(Irradiance, OfAQuadIsLambertsFormula) {
         expect_spot<TypeParam>(
             scene, polygon_form_factor({c, c + test.edge_u, c + test.edge_u + test.edge_v, c + test.edge_v}));
     }
+}
+
+/// A lamp of one side, whose texture is half as bright as it shines.
+TYPED_TEST(Irradiance, OfALampOfOneSideComesFromItsFront) {
+    const Vector3d corner(-1, 1, -0.5);
+    const Vector3d edges[] = {{2, 0, 0}, {0, 0, 2}};  // in this order the front looks down
+    for (const bool looks_down : {true, false}) {
+        TestScene scene = lit_spot({0.2, 0.8, 8});
+        const std::int32_t lamp = scene.emitter(kRadiance / 2);
+        scene.materials.back().strength = 2;
+        scene.materials.back().front_only = true;
+        scene.quad(corner, edges[looks_down ? 0 : 1], edges[looks_down ? 1 : 0], lamp);
+        if (looks_down) {
+            expect_spot<TypeParam>(scene, polygon_form_factor({corner, corner + edges[0], corner + edges[0] + edges[1],
+                                                               corner + edges[1]}));
+        } else {
+            expect_black<TypeParam>(scene);
+        }
+    }
+}
+
+TYPED_TEST(Irradiance, OfASphereThatShinesOutwardIsNoneWithinIt) {
+    TestScene scene = lit_spot({0.5, 1, 8});
+    const std::int32_t lamp = scene.emitter(kRadiance);
+    scene.materials.back().front_only = true;
+    scene.sphere({0, 0, 0}, 20, lamp);
+    expect_black<TypeParam>(scene);
 }
 
 }  // namespace

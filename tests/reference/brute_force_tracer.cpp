@@ -127,7 +127,8 @@ class Tracer {
             const Vec mirrored = direction - 2 * dot(direction, normal) * normal;
             switch (material.kind) {
                 case Material::Kind::Emissive:
-                    return throughput;
+                    if (material.front_only && !is_front) return {};
+                    return material.strength * throughput;
                 case Material::Kind::Diffuse:
                     direction = unit(normal + on_sphere());
                     break;

@@ -203,6 +203,23 @@ TEST(SceneReader, AcceptsTheEdgesOfItsRanges) {
     EXPECT_EQ(scene.spheres[0].center1, scene.spheres[0].center0);
 }
 
+TEST(SceneReader, ALampHasAStrengthAndSides) {
+    const auto lamp = [](const std::string& keys) {
+        const std::string materials =
+            R"("materials": {"e": {"type": "emissive", "radiance": [1, 2, 3])" + keys + R"(}}, "shapes": [])";
+        const Scene scene = parse_scene(with(kSmallest, "\"shapes\": []", materials), "a.json", ".");
+        return std::make_pair(scene.materials.at(0), scene_hash(scene));
+    };
+    const auto [plain, hash] = lamp("");
+    EXPECT_EQ(plain.strength, 1);
+    EXPECT_FALSE(plain.front_only);
+    EXPECT_EQ(lamp(R"(, "strength": 1, "sides": "both")").second, hash);
+    EXPECT_EQ(lamp(R"(, "strength": 2.5)").first.strength, 2.5);
+    EXPECT_NE(lamp(R"(, "strength": 2.5)").second, hash);
+    EXPECT_TRUE(lamp(R"(, "sides": "front")").first.front_only);
+    EXPECT_NE(lamp(R"(, "sides": "front")").second, hash);
+}
+
 TEST(SceneReader, TheDocumentedExampleParses) {
     const std::string document = file_text(fs::path(RAYPOOL_SOURCE_DIR) / "docs/scene-format.md");
     const std::size_t begin = document.find("```json\n");
