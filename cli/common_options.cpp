@@ -2,6 +2,7 @@
 
 #include "cli/options.h"
 #include "core/math/path.h"
+#include "core/runtime/settings_text.h"
 #include "core/scene/scene_reader.h"
 
 namespace raypool::cli {
@@ -22,6 +23,11 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
                     "How numbers lie in a pixel: independent or sobol (default: independent)")
         ->check(CLI::IsMember({"independent", "sobol"}));
     command.add_flag("--roulette", options.roulette, "End paths that carry little by chance, without bias");
+    command
+        .add_option("--light-sampling", options.light_sampling,
+                    "How paths find emitters: none (by chance), light (by sampling them), or mis (both, weighted; "
+                    "default: none)")
+        ->check(CLI::IsMember({"none", "light", "mis"}));
     command.add_option("--threads", options.threads, "OpenMP threads (default: OMP_NUM_THREADS)")
         ->check(CLI::Range(1, 4096));
     command.add_option("--schedule", options.schedule,
@@ -38,6 +44,7 @@ RenderSettings common_settings(const CommonOptions& options) {
     settings.seed = parse_seed(options.seed);
     settings.sampler = parse_sampler(options.sampler);
     settings.roulette = options.roulette;
+    settings.light_sampling = parse_light_sampling(options.light_sampling);
     settings.threads = thread_count(options.threads);
     if (options.grain) settings.grain = parse_grain(*options.grain);
     return settings;

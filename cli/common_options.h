@@ -22,6 +22,7 @@ struct CommonOptions {
     std::string seed = "0";
     std::string sampler = "independent";
     bool roulette = false;
+    std::string light_sampling = "none";
     int threads = 0;  ///< 0: OpenMP's
     std::optional<std::string> schedule;
     std::optional<std::string> grain;

@@ -83,7 +83,8 @@ double load_imbalance(const RenderReport& report) {
 }
 
 std::string run_once(Contender& contender, const CompiledScene<float>& scene, const RenderSettings& settings) {
-    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, scene.max_radiance));
+    Framebuffer framebuffer(scene.width, scene.height,
+                            FixedPoint::make(settings.end_sample, greatest_sample(scene, settings)));
     contender.last = contender.engine->render(scene, settings, framebuffer);
     return framebuffer.hash();
 }
@@ -187,6 +188,7 @@ int compare(const CompareOptions& options) {
                              {"depth", settings.depth},
                              {"sampler", to_string(settings.sampler)},
                              {"roulette", settings.roulette},
+                             {"light_sampling", to_string(settings.light_sampling)},
                              {"threads", settings.threads},
                              {"schedule", to_string(settings.schedule)},
                              {"repeats", repeats},

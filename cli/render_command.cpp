@@ -46,10 +46,11 @@ void check_memory(const Scene& scene, const RenderOptions& options, const cluste
 }
 
 /// Of the code that a scene runs on, which may be compiled for more than it needs.
-std::size_t stored_record_bytes(const Scene& scene, Precision precision) {
+std::size_t stored_record_bytes(const Scene& scene, const ImageSettings& settings, Precision precision) {
     const bool is_double = precision == Precision::Double;
     const std::size_t first = is_double ? kFirstCompiledFeatures<double> : kFirstCompiledFeatures<float>;
-    const Features& features = kCompiledFeatures[compiled_features_index(scene_features(scene), first)];
+    const Features& features =
+        kCompiledFeatures[compiled_features_index(needed_features(scene_features(scene), settings), first)];
     return ray_record_bytes(features, is_double ? sizeof(double) : sizeof(float));
 }
 
@@ -152,7 +153,8 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     check_memory(scene, options, ranks);
     CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;
-    record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.precision), record.settings.threads);
+    record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.settings, record.precision),
+                                record.settings.threads);
     if (!options.checkpoint.file.empty() && engines().find(record.engine).has_pool &&
         adds_reals(record.pool.accumulator))
         throw InputError("--accumulator: atomic-float and atomic-double have no exact sums to keep in a --checkpoint");

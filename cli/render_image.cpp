@@ -84,7 +84,8 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
                     {},
                     {},
                     0,
-                    Framebuffer(compiled.width, compiled.height, FixedPoint::make(record.spp, compiled.max_radiance),
+                    Framebuffer(compiled.width, compiled.height,
+                                FixedPoint::make(record.spp, greatest_sample(compiled, record.settings)),
                                 is_adaptive ? Moments::Second : Moments::First)};
     if (options.is_resumed) {
         if (ranks.is_first())
@@ -124,7 +125,8 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
 }  // namespace
 
 ImageKey image_key(const Scene& scene, const RenderRecord& record) {
-    const auto& [depth, seed, sampler, split_depth, roulette] = static_cast<const ImageSettings&>(record.settings);
+    const auto& [depth, seed, sampler, split_depth, roulette, light_sampling] =
+        static_cast<const ImageSettings&>(record.settings);
     // What differs first is named, so a width goes before the scene, whose hash covers the size, and a height behind
     // it.
     return {{"image_version", fmt::to_string(kImageVersion)},
@@ -136,6 +138,7 @@ ImageKey image_key(const Scene& scene, const RenderRecord& record) {
             {"seed", fmt::to_string(seed)},
             {"sampler", sampler == Sampler::Sobol ? "sobol" : "independent"},
             {"roulette", roulette ? "on" : "off"},
+            {"light_sampling", to_string(light_sampling)},
             {"precision", record.precision == Precision::Float ? "float" : "double"},
             {"target_error", fmt::to_string(record.target_error)}};
 }

@@ -60,10 +60,13 @@ void print_step(const RenderRecord& record) {
 void print_summary(const RenderRecord& record) {
     const RenderSettings& settings = record.settings;
     const RenderReport& report = record.report;
+    const std::string lights = settings.light_sampling == LightSampling::None
+                                   ? ""
+                                   : fmt::format(", light sampling {}", to_string(settings.light_sampling));
     print("{}: {} x {}, samples {} to {} of {}, depth {}{}, {}seed {}, {}\n", record.scene_name, record.width,
           record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth,
-          settings.roulette ? " and roulette" : "", settings.sampler == Sampler::Sobol ? "sobol, " : "", settings.seed,
-          record.precision == Precision::Float ? "float" : "double");
+          (settings.roulette ? " and roulette" : "") + lights, settings.sampler == Sampler::Sobol ? "sobol, " : "",
+          settings.seed, record.precision == Precision::Float ? "float" : "double");
     const std::string ranks = record.ranks.empty() ? "" : fmt::format("{} ranks of ", record.ranks.size());
     print("{} engine: {}{} thread{}, {}\n", record.engine, ranks, settings.threads, settings.threads == 1 ? "" : "s",
           !loops_over_image(record) ? "one pool for all"

@@ -121,6 +121,7 @@ class alignas(64) CompiledLineTracer final : public LineTracer {
     }
     void report(ThreadReport& work, SampleStatistics& statistics) const override {
         work.segments = tracer_.segments();
+        work.shadow_rays = tracer_.shadow_rays();
         work.box_tests = tracer_.work().box_tests;
         work.primitive_tests = tracer_.work().primitive_tests;
         statistics = tracer_.statistics();
@@ -254,11 +255,12 @@ std::unique_ptr<RenderSession> begin(const CompiledScene<Scalar>& scene, const R
     const bool counts_for_image = settings.cost_image != nullptr && settings.cost_image->cost == Cost::Tests;
     if (settings.count_work || counts_for_image)
         return begin<form, kEverything, Scalar, TestCount>(scene, settings, framebuffer);
-    return dispatch_features<kFirstCompiledFeatures<Scalar>>(scene.features, [&]<Features features>() {
-        return are_plain(settings) ? begin<form, features, Scalar, NoTestCount, Splitting::Off, Rules::Plain>(
-                                         scene, settings, framebuffer)
-                                   : begin<form, features, Scalar, NoTestCount>(scene, settings, framebuffer);
-    });
+    return dispatch_features<kFirstCompiledFeatures<Scalar>>(
+        needed_features(scene.features, settings), [&]<Features features>() {
+            return are_plain(settings) ? begin<form, features, Scalar, NoTestCount, Splitting::Off, Rules::Plain>(
+                                             scene, settings, framebuffer)
+                                       : begin<form, features, Scalar, NoTestCount>(scene, settings, framebuffer);
+        });
 }
 
 }  // namespace raypool::recursive

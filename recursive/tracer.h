@@ -17,9 +17,17 @@ namespace raypool::recursive {
 
 enum class Form : bool { Recursive, Iterative };
 
-/// A path between two segments.
+/// What a path carries where lights are sampled.
+template <class Scalar, bool has_lights>
+struct PathLight {};
 template <class Scalar>
-struct Path {
+struct PathLight<Scalar, true> {
+    Scalar density = 0;  ///< of the ray's direction, where lights were sampled too; else 0
+};
+
+/// A path between two segments.
+template <class Scalar, bool has_lights>
+struct Path : PathLight<Scalar, has_lights> {
     Ray<Scalar> ray;
     Vec3<Scalar> throughput;
     PathKey<Scalar> key;
@@ -42,6 +50,8 @@ constexpr bool are_plain(const ImageSettings& settings) {
 /// own finds hits in another way (bench/peers/).
 template <Features features, class Scalar, class Work, Splitting splitting, Rules rules = Rules::Any>
 class Tracer {
+    using Path = recursive::Path<Scalar, features.lights>;
+
   public:
     Tracer(const SceneView<Scalar>& scene, const ImageSettings& settings, const FixedPoint& fixed,
            const Work& work = {})
@@ -50,6 +60,7 @@ class Tracer {
           depth_(settings.depth),
           split_depth_(settings.split_depth),
           roulette_(settings.roulette),
+          light_sampling_(settings.light_sampling),
           converter_(fixed),
           work_(work) {}
 
@@ -61,7 +72,7 @@ class Tracer {
         const Ray<Scalar> ray = camera_ray<features, Scalar>(scene_.camera, static_cast<Scalar>(x),
                                                              static_cast<Scalar>(y), key.pixel, key.sample, seed());
         sum_ = {};
-        const Path<Scalar> path{ray, vec3<Scalar>(1, 1, 1), key, kNoPrimitive, 0};
+        const Path path{{}, ray, vec3<Scalar>(1, 1, 1), key, kNoPrimitive, 0};
         if constexpr (form == Form::Recursive) {
             recurse(path);
         } else {
@@ -71,6 +82,7 @@ class Tracer {
     }
 
     [[nodiscard]] std::int64_t segments() const { return segments_; }
+    [[nodiscard]] std::int64_t shadow_rays() const { return shadow_rays_; }
     [[nodiscard]] const Work& work() const { return work_; }
     [[nodiscard]] FixedSquare square(const FixedRgb& sample) const { return converter_.square(sample); }
     [[nodiscard]] const SampleStatistics& statistics() const { return converter_.statistics(); }
@@ -79,12 +91,12 @@ class Tracer {
   private:
     /// By recursion, as in the paper: a bounce is a call. What follows a segment is made in its own frame and handed on
     /// by reference: a copy would be read before the stores of its parts have ended, which takes a few nanoseconds.
-    [[gnu::noinline]] void recurse(const Path<Scalar>& path) {
-        Path<Scalar> after;
+    [[gnu::noinline]] void recurse(const Path& path) {
+        Path after;
         if constexpr (splitting == Splitting::Off) {
             if (advance(path, after, nullptr) == Next::OnePath) return recurse(after);
         } else {
-            Path<Scalar> reflected;
+            Path reflected;
             const Next next = advance(path, after, &reflected);
             if (next == Next::TwoPaths) recurse(reflected);
             if (next != Next::End) return recurse(after);
@@ -93,12 +105,12 @@ class Tracer {
     }
 
     /// The same with a loop in place of the call.
-    void iterate(Path<Scalar> path) {
+    void iterate(Path path) {
         if constexpr (splitting == Splitting::Off) {
             while (advance(path, path, nullptr) != Next::End) {
             }
         } else {
-            Path<Scalar> waiting[path_step::kMostSplits + 1];
+            Path waiting[path_step::kMostSplits + 1];
             for (int count = 0;;) {
                 const Next next = advance(path, path, &waiting[count]);
                 if (next == Next::TwoPaths) ++count;
@@ -110,7 +122,7 @@ class Tracer {
 
     /// Traces one segment and sets the path after it, which may take the place of `path`; `reflected` is set when there
     /// is a second one.
-    RAYPOOL_INLINE Next advance(const Path<Scalar>& path, Path<Scalar>& after, Path<Scalar>* reflected) {
+    RAYPOOL_INLINE Next advance(const Path& path, Path& after, Path* reflected) {
         if (path_step::bounce(path.step) == static_cast<std::uint32_t>(depth_)) return Next::End;
         ++segments_;
         work_.begin_segment();
@@ -118,15 +130,25 @@ class Tracer {
         if (hit.primitive_id == kNoPrimitive) {
             return finish(path.throughput.cwiseProduct(sky_radiance<Scalar>(scene_.sky, path.ray.direction)));
         }
-        const Scattered<Scalar> out =
-            scatter<features, Scalar, splitting>(scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key,
-                                                 path.step, seed(), split_depth_, rules == Rules::Any && roulette_);
+        LightPart<Scalar> lights;
+        if constexpr (features.lights) {
+            lights.sampling = light_sampling_;
+            lights.arriving_density = path.density;
+            lights.may_go_on = path_step::bounce(path.step) + 1 < static_cast<std::uint32_t>(depth_);
+        }
+        const Scattered<Scalar> out = scatter<features, Scalar, splitting>(
+            scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key, path.step, seed(), split_depth_,
+            rules == Rules::Any && roulette_, features.lights ? &lights : nullptr);
+        if constexpr (features.lights) {
+            if (light_sampling_ != LightSampling::None && lights.has_shadow_ray) follow_shadow_ray(path, out, lights);
+        }
         if (out.is_emitter) return finish(out.throughput);
         after.ray = {out.start.origin, out.direction, path.ray.time};
         after.throughput = out.throughput;
         after.key = path.key;
         after.leaving_id = static_cast<std::int32_t>(out.start.leaving_id);
         after.step = path.step + 1;
+        if constexpr (features.lights) after.density = lights.density;
         if constexpr (splitting == Splitting::On) {
             if (out.is_split) {
                 *reflected = after;
@@ -148,9 +170,20 @@ class Tracer {
     }
 
     Next finish(const Vec3<Scalar>& radiance) {
+        add(radiance);
+        return Next::End;
+    }
+    RAYPOOL_INLINE void add(const Vec3<Scalar>& radiance) {
         const FixedRgb fixed = converter_.template convert<Scalar>(radiance);
         for (int i = 0; i < 3; ++i) sum_[i] += fixed[i];
-        return Next::End;
+    }
+
+    void follow_shadow_ray(const Path& path, const Scattered<Scalar>& out, const LightPart<Scalar>& lights) {
+        ++shadow_rays_;
+        const Ray<Scalar> ray{out.start.origin, lights.light.direction, path.ray.time};
+        const Hit<Scalar> light{lights.light.t, lights.light.primitive_id};
+        if (!is_occluded<features>(scene_, ray, static_cast<std::int32_t>(out.start.leaving_id), light, work_))
+            add(lights.radiance);
     }
 
     const SceneView<Scalar>& scene_;
@@ -158,7 +191,9 @@ class Tracer {
     std::int32_t depth_;
     int split_depth_;
     bool roulette_;
+    LightSampling light_sampling_;
     std::int64_t segments_ = 0;
+    std::int64_t shadow_rays_ = 0;
     FixedRgb sum_{};
     SampleConverter converter_;
     Work work_;

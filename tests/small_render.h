@@ -41,9 +41,10 @@ struct Rendered {
 /// Renders into an empty framebuffer with `render_into(framebuffer)`, which returns a RenderReport.
 template <class Scalar, class RenderInto>
 Rendered rendered_by(const CompiledScene<Scalar>& scene, const RenderSettings& settings, RenderInto render_into) {
-    Rendered out{Framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, scene.max_radiance)),
-                 {},
-                 settings.end_sample - settings.first_sample};
+    Rendered out{
+        Framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, greatest_sample(scene, settings))),
+        {},
+        settings.end_sample - settings.first_sample};
     out.report = render_into(out.framebuffer);
     return out;
 }

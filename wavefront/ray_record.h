@@ -24,6 +24,7 @@ struct RayRecord {
     PathKey<Real> key;
     Uint32<Real> leaving_id;  ///< what the ray starts on (RayStart::leaving_id); kNoPrimitive as an unsigned number
     Uint32<Real> step;        ///< path_step: hits so far, and the branch
+    Real density;             ///< of the direction, where lights were sampled too; else 0
 };
 
 /// The one list of fields.
@@ -37,6 +38,7 @@ RAYPOOL_INLINE void for_each_field(Record& record, Visit visit) {
     visit(record.key.sample);
     visit(record.leaving_id);
     visit(record.step);
+    if constexpr (features.lights) visit(record.density);
 }
 
 template <Features features, class Scalar>
@@ -63,6 +65,7 @@ inline constexpr std::size_t kPadding = 16;
 constexpr Features record_features(const Features& features) {
     Features shown;
     shown.motion = features.motion;
+    shown.lights = features.lights;
     return shown;
 }
 
@@ -84,7 +87,7 @@ class ColumnsOfKind {
     template <class Real>
     RAYPOOL_INLINE RayRecord<Real> load(std::size_t first) const {
         RayRecord<Real> record;
-        record.ray.time = Real(0);
+        record.ray.time = record.density = Real(0);
         const std::byte* column = memory_.get();
         for_each_field<features>(record, [&](auto& field) {
             using T = typename LaneOf<std::remove_cvref_t<decltype(field)>>::Type;

@@ -20,7 +20,7 @@ using WideReal = Wide<Scalar, stdx::native_simd<Scalar>::size()>;
 template <Features features, class Real, class Work, Splitting splitting>
 StagesMaker<record_features(features), ScalarOf<Real>> stages_maker();
 
-/// In float for both kinds of record, in double for that of moving shapes.
+/// In float for all kinds of record, in double for those of moving shapes.
 template <Features features, class Scalar>
 std::unique_ptr<RenderSession> begin_session(const CompiledScene<Scalar>&, const RenderSettings&, const PoolSettings&,
                                              Framebuffer&, const StagesMaker<features, Scalar>&);
@@ -38,9 +38,10 @@ std::unique_ptr<RenderSession> begin(const CompiledScene<ScalarOf<Real>>& scene,
                                      const PoolSettings& pool, Framebuffer& framebuffer) {
     if (settings.split_depth > 0 || settings.count_work)
         return begin<kEverything, Real, ListCount, Splitting::On>(scene, settings, pool, framebuffer);
-    return dispatch_features<kFirstCompiledFeatures<ScalarOf<Real>>>(scene.features, [&]<Features features>() {
-        return begin<features, Real, NoTestCount, Splitting::Off>(scene, settings, pool, framebuffer);
-    });
+    return dispatch_features<kFirstCompiledFeatures<ScalarOf<Real>>>(
+        needed_features(scene.features, settings), [&]<Features features>() {
+            return begin<features, Real, NoTestCount, Splitting::Off>(scene, settings, pool, framebuffer);
+        });
 }
 
 }  // namespace raypool::wavefront

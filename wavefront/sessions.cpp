@@ -13,18 +13,22 @@ std::unique_ptr<RenderSession> begin_session(const CompiledScene<Scalar>& scene,
 }
 
 constexpr Features kStill = record_features({});
-constexpr Features kMoving = record_features(kEverything);
+constexpr Features kStillWithLights = record_features({.lights = true});
+constexpr Features kMoving = record_features(kAllButLights);
+constexpr Features kMovingWithLights = record_features(kEverything);
 
-template std::unique_ptr<RenderSession> begin_session(const CompiledScene<float>&, const RenderSettings&,
-                                                      const PoolSettings&, Framebuffer&,
-                                                      const StagesMaker<kStill, float>&);
-template std::unique_ptr<RenderSession> begin_session(const CompiledScene<float>&, const RenderSettings&,
-                                                      const PoolSettings&, Framebuffer&,
-                                                      const StagesMaker<kMoving, float>&);
+#define RAYPOOL_SESSION(features, scalar)                                                                      \
+    template std::unique_ptr<RenderSession> begin_session(const CompiledScene<scalar>&, const RenderSettings&, \
+                                                          const PoolSettings&, Framebuffer&,                   \
+                                                          const StagesMaker<features, scalar>&);
+RAYPOOL_SESSION(kStill, float)
+RAYPOOL_SESSION(kStillWithLights, float)
+RAYPOOL_SESSION(kMoving, float)
+RAYPOOL_SESSION(kMovingWithLights, float)
 #ifndef RAYPOOL_NO_DOUBLE
-template std::unique_ptr<RenderSession> begin_session(const CompiledScene<double>&, const RenderSettings&,
-                                                      const PoolSettings&, Framebuffer&,
-                                                      const StagesMaker<kMoving, double>&);
+RAYPOOL_SESSION(kMoving, double)
+RAYPOOL_SESSION(kMovingWithLights, double)
 #endif
+#undef RAYPOOL_SESSION
 
 }  // namespace raypool::wavefront

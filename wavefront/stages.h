@@ -54,7 +54,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         log_.begin();
         converter_ = SampleConverter(context_.fixed);
         intersect_.work() = {};
-        paths_ = segments_ = 0;
+        paths_ = segments_ = shadow_rays_ = 0;
         waited_s_ = 0;
     }
 
@@ -150,6 +150,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
     void report(ThreadReport& work, SampleStatistics& statistics) const override {
         work.paths = paths_;
         work.segments = segments_;
+        work.shadow_rays = shadow_rays_;
         work.box_tests = intersect_.work().box_tests;
         work.primitive_tests = intersect_.work().primitive_tests;
         work.wait_s = waited_s_;
@@ -178,6 +179,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         record.key = {lanes.pixel, lanes.sample};
         record.leaving_id = Uint32<Real>(static_cast<std::uint32_t>(kNoPrimitive));
         record.step = Uint32<Real>(0U);
+        record.density = Real(0);
         return record;
     }
 
@@ -228,21 +230,30 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         if (hits == 0) return 0;
 
         const Int<Real> id = select(is_hit, hit.primitive_id, Int<Real>(0));
+        LightPart<Real> lights;
+        if constexpr (features.lights) {
+            lights.sampling = context_.settings.light_sampling;
+            lights.arriving_density = record.density;
+            lights.may_go_on = !is_deepest(record.step);
+        }
         const Scattered<Real> out = scatter<features, Real, splitting>(
             context_.scene, record.ray, hit.t, id, record.throughput, record.key, record.step, context_.seed,
-            context_.settings.split_depth, context_.settings.roulette);
+            context_.settings.split_depth, context_.settings.roulette, features.lights ? &lights : nullptr);
+        if constexpr (features.lights) {
+            if (lights.sampling != LightSampling::None) follow_shadow_rays(record, out, lights, hits);
+        }
         if constexpr (features.emissive) {
             if (const unsigned ends = mask_bits(out.is_emitter) & hits; ends != 0)
                 contributions_.template put<Real>(record.key.pixel, out.throughput, ends);
         }
         const Uint32<Real> step = record.step + Uint32<Real>(1U);
-        const Mask<Real> is_deepest = from_uint32<Real>(path_step::bounce<Uint32<Real>>(step)) >=
-                                      Real(static_cast<Scalar>(context_.settings.depth));
+        const Mask<Real> is_deepest = this->is_deepest(record.step);
         const unsigned alive = mask_bits(out.is_alive && !is_deepest) & hits;
         RayRecord<Real> next = record;
         next.ray.origin = out.start.origin;
         next.leaving_id = id_bits(out.start.leaving_id);
         next.step = step;
+        if constexpr (features.lights) next.density = lights.density;
         if constexpr (splitting == Splitting::On) {
             const Uint32<Real> reflected = path_step::reflected_branch<Uint32<Real>>(step);
             const unsigned alive_too = mask_bits(out.is_reflected_alive && !is_deepest) & hits;
@@ -259,6 +270,31 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         next.throughput = out.throughput;
         records.template append<Real>(target, next, alive, end);
         return static_cast<std::size_t>(std::popcount(alive));
+    }
+
+    /// Whether the segment that ended at step `step` was the last that the depth allows.
+    RAYPOOL_INLINE Mask<Real> is_deepest(const Uint32<Real>& step) const {
+        return from_uint32<Real>(path_step::bounce<Uint32<Real>>(step + Uint32<Real>(1U))) >=
+               Real(static_cast<Scalar>(context_.settings.depth));
+    }
+
+    /// Adds what comes from lights that nothing hides, of the hits in `bits`.
+    void follow_shadow_rays(const RayRecord<Real>& record, const Scattered<Real>& out, const LightPart<Real>& lights,
+                            unsigned bits) {
+        const LightSample<Real>& light = lights.light;
+        unsigned free = 0;
+        for (unsigned left = mask_bits(lights.has_shadow_ray) & bits; left != 0; left &= left - 1) {
+            const int i = std::countr_zero(left);
+            ++shadow_rays_;
+            const auto part = [i](const Vec3<Real>& v) {
+                return vec3<Scalar>(lane(v[0], i), lane(v[1], i), lane(v[2], i));
+            };
+            const Ray<Scalar> ray{part(out.start.origin), part(light.direction), lane(record.ray.time, i)};
+            const Hit<Scalar> at{lane(light.t, i), lane(light.primitive_id, i)};
+            const auto leaving_id = static_cast<std::int32_t>(lane(out.start.leaving_id, i));
+            if (!is_occluded<features>(context_.scene, ray, leaving_id, at, intersect_.work())) free |= 1U << i;
+        }
+        if (free != 0) contributions_.template put<Real>(record.key.pixel, lights.radiance, free);
     }
 
     static Uint32<Real> select_bits(unsigned bits, const Uint32<Real>& yes, const Uint32<Real>& no) {
@@ -294,6 +330,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
     SampleConverter converter_;
     std::int64_t paths_ = 0;
     std::int64_t segments_ = 0;
+    std::int64_t shadow_rays_ = 0;
 };
 
 }  // namespace raypool::wavefront

@@ -2,7 +2,7 @@
 
 namespace raypool::wavefront {
 
-template StagesMaker<record_features(kEverything), double>
-stages_maker<kEverything, WideReal<double>, NoTestCount, Splitting::Off>();
+template StagesMaker<record_features(kAllButLights), double>
+stages_maker<kAllButLights, WideReal<double>, NoTestCount, Splitting::Off>();
 
 }  // namespace raypool::wavefront

@@ -2,7 +2,7 @@
 
 namespace raypool::wavefront {
 
-template StagesMaker<record_features(kEverything), float>
-stages_maker<kEverything, WideReal<float>, NoTestCount, Splitting::Off>();
+template StagesMaker<record_features(kAllButLights), float>
+stages_maker<kAllButLights, WideReal<float>, NoTestCount, Splitting::Off>();
 
 }  // namespace raypool::wavefront

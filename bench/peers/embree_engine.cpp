@@ -37,9 +37,11 @@ MakeTracer packet_tracers(const CompiledScene<float>& scene) {
 std::unique_ptr<RenderSession> EmbreeEngine::begin(const CompiledScene<float>& scene, const RenderSettings& settings,
                                                    Framebuffer& framebuffer) const {
     if (settings.split_depth > 0) throw InputError(name() + ": follows one path at a time; --split-depth must be 0");
+    if (settings.light_sampling != LightSampling::None)
+        throw InputError(name() + ": traces no shadow rays; --light-sampling must be none");
     if (settings.count_work) throw InputError(name() + ": Embree does not say which boxes it tests");
     if (settings.cost_image != nullptr) throw InputError(name() + ": has no cost of a pixel");
-    const MakeTracer make = dispatch_features(scene.features, [&]<Features features>() {
+    const MakeTracer make = dispatch_features(needed_features(scene.features, settings), [&]<Features features>() {
         if (rays_ == EmbreeRays::Packet) return packet_tracers<features>(scene);
         return recursive::are_plain(settings) ? single_tracers<features, recursive::Rules::Plain>(scene)
                                               : single_tracers<features, recursive::Rules::Any>(scene);

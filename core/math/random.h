@@ -38,6 +38,7 @@ enum class RandomPurpose : std::uint32_t {
     Film,     ///< 0, 1: place in the pixel; 2, 3: place on the lens. Once
     Shutter,  ///< 0: time. Once
     Scatter,  ///< 0, 1: direction; 2: reflect or refract; 3: roulette
+    Light,    ///< 0, 3: which light; 1, 2: where on it
 };
 
 namespace detail {

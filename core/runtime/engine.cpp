@@ -31,6 +31,10 @@ void check_settings(const RenderSettings& settings, const Framebuffer& framebuff
         throw InputError(
             "--split-depth: a sample that splits reaches its pixel in parts, so its square, which --target-error "
             "needs, is not known");
+    if (framebuffer.has_squares() && settings.light_sampling != LightSampling::None)
+        throw InputError(
+            "--light-sampling: a sample reaches its pixel in parts, so its square, which --target-error needs, is not "
+            "known");
 }
 
 void refuse_double() {

@@ -4,6 +4,7 @@
 /// depth and sample range, every engine and every setting of the loop makes the same sums.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -105,6 +106,20 @@ std::int64_t path_count(const SceneView<Scalar>& scene, const RenderUnit& unit) 
 template <class Scalar>
 std::int64_t path_count(const SceneView<Scalar>& scene, const RenderSettings& settings) {
     return path_count(scene, RenderUnit{settings.first_sample, settings.end_sample, settings.pixels});
+}
+
+/// What a render needs of kernels: the scene's features, less light sampling where the settings have none.
+inline Features needed_features(const Features& scene, const ImageSettings& settings) {
+    Features needed = scene;
+    needed.lights = scene.lights && settings.light_sampling != LightSampling::None;
+    return needed;
+}
+
+/// No sample carries more to the image in any channel. With light sampling a path adds at every hit, and at its end.
+template <class Scalar>
+double greatest_sample(const SceneView<Scalar>& scene, const ImageSettings& settings) {
+    const bool samples_lights = needed_features(scene.features, settings).lights;
+    return scene.max_radiance * (samples_lights ? std::max(settings.depth, 1) : 1);
 }
 
 /// What engines refuse alike, as an InputError.

@@ -16,6 +16,7 @@ struct alignas(64) ThreadReport {
     std::int64_t segments = 0;         ///< rays traced, camera rays included
     std::int64_t box_tests = 0;        ///< with count_work
     std::int64_t primitive_tests = 0;  ///< with count_work
+    std::int64_t shadow_rays = 0;      ///< toward lights; no segments of paths
     double busy_s = 0;                 ///< working
     double processor_s = 0;            ///< on a processor meanwhile; what waits by spinning at barriers is on one too
     double wait_s = 0;                 ///< waiting for the others
@@ -25,6 +26,7 @@ struct alignas(64) ThreadReport {
         segments += later.segments;
         box_tests += later.box_tests;
         primitive_tests += later.primitive_tests;
+        shadow_rays += later.shadow_rays;
         busy_s += later.busy_s;
         processor_s += later.processor_s;
         wait_s += later.wait_s;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/math/random.h"
+#include "core/shading/lights.h"
 
 namespace raypool {
 
@@ -20,6 +21,7 @@ struct ImageSettings {
     Sampler sampler = Sampler::Independent;
     int split_depth = 0;    ///< the first so many hits on glass follow both branches; at most path_step::kMostSplits
     bool roulette = false;  ///< end paths that carry little by chance, without bias (core/shading/roulette.h)
+    LightSampling light_sampling = LightSampling::None;
 };
 
 /// How a render is handed out to threads: OpenMP's schedule clause; its taskloop, whose grainsize is the chunk; or

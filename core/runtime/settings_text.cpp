@@ -93,6 +93,17 @@ std::string to_string(Sampler sampler) {
     return sampler == Sampler::Sobol ? "sobol" : "independent";
 }
 
+LightSampling parse_light_sampling(std::string_view text) {
+    if (text == "none") return LightSampling::None;
+    if (text == "light") return LightSampling::Light;
+    if (text == "mis") return LightSampling::Mis;
+    throw InputError(fmt::format("--light-sampling: must be none, light or mis, got \"{}\"", text));
+}
+
+std::string to_string(LightSampling sampling) {
+    return sampling == LightSampling::None ? "none" : sampling == LightSampling::Light ? "light" : "mis";
+}
+
 std::optional<LoopSchedule> schedule_of_environment() {
     const char* said = std::getenv("OMP_SCHEDULE");
     if (said == nullptr) return std::nullopt;

@@ -23,6 +23,10 @@ std::string to_string(const Grain& grain);
 Sampler parse_sampler(std::string_view text);
 std::string to_string(Sampler sampler);
 
+/// none, light or mis.
+LightSampling parse_light_sampling(std::string_view text);
+std::string to_string(LightSampling sampling);
+
 /// What OMP_SCHEDULE says, if it is set, in upper or lower case and with blanks as OpenMP has it: static, dynamic or
 /// guided. All else is refused: of `auto` and of the modifiers monotonic: and nonmonotonic: a record could not say what
 /// they came to.

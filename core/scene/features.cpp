@@ -1,5 +1,7 @@
 #include "core/scene/features.h"
 
+#include "core/scene/emission.h"
+
 namespace raypool {
 
 namespace {
@@ -36,8 +38,12 @@ Features scene_features(const Scene& scene) {
         add_material(sphere.material_id);
         // With a shutter that opens and closes at time 0 nothing has moved yet.
         features.motion |= sphere.center0 != sphere.center1 && scene.camera.shutter_close > 0;
+        features.lights |= emitted_power(scene, sphere) > 0;
     }
-    for (const Quad& quad : scene.quads) add_material(quad.material_id);
+    for (const Quad& quad : scene.quads) {
+        add_material(quad.material_id);
+        features.lights |= emitted_power(scene, quad) > 0;
+    }
     for (const Plane& plane : scene.planes) add_material(plane.material_id);
     features.planar = !scene.quads.empty() || !scene.planes.empty();
     features.defocus = scene.camera.defocus_angle_degrees > 0;

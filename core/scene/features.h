@@ -24,6 +24,7 @@ struct Features {
     bool emissive = false;    ///< surfaces that shine
     bool checker = false;     ///< 3-D checkers
     bool uv = false;          ///< textures that need surface coordinates: uv checkers and images
+    bool lights = false;      ///< emissive quads or spheres: light sampling may be on
 
     bool operator==(const Features&) const = default;
 };
@@ -33,15 +34,16 @@ struct FeatureName {
     const char* name;
     bool Features::*member;
 };
-inline constexpr std::array<FeatureName, 9> kFeatureNames{{{"motion", &Features::motion},
-                                                           {"defocus", &Features::defocus},
-                                                           {"planar", &Features::planar},
-                                                           {"metal", &Features::metal},
-                                                           {"fuzz", &Features::fuzz},
-                                                           {"dielectric", &Features::dielectric},
-                                                           {"emissive", &Features::emissive},
-                                                           {"checker", &Features::checker},
-                                                           {"uv", &Features::uv}}};
+inline constexpr std::array<FeatureName, 10> kFeatureNames{{{"motion", &Features::motion},
+                                                            {"defocus", &Features::defocus},
+                                                            {"planar", &Features::planar},
+                                                            {"metal", &Features::metal},
+                                                            {"fuzz", &Features::fuzz},
+                                                            {"dielectric", &Features::dielectric},
+                                                            {"emissive", &Features::emissive},
+                                                            {"checker", &Features::checker},
+                                                            {"uv", &Features::uv},
+                                                            {"lights", &Features::lights}}};
 
 /// True when code compiled for `a` can render a scene with features `b`.
 constexpr bool covers(const Features& a, const Features& b) {
@@ -53,22 +55,28 @@ constexpr bool covers(const Features& a, const Features& b) {
 Features scene_features(const Scene& scene);
 
 /// Bytes of a ray record, the state of a path between two segments: origin, direction and throughput, three scalars
-/// each; pixel, sample, primitive left and bounce, 4 bytes each; and a time where shapes move. Defocus, fuzz, glass,
-/// textures and emission need none: they act within a segment.
+/// each; pixel, sample, primitive left and bounce, 4 bytes each; a time where shapes move; and the density of its
+/// direction where lights are sampled. Defocus, fuzz, glass, textures and emission need none: they act within a
+/// segment.
 constexpr std::size_t ray_record_bytes(const Features& features, std::size_t scalar_bytes) {
-    return 9 * scalar_bytes + 4 * sizeof(std::uint32_t) + (features.motion ? scalar_bytes : 0);
+    return 9 * scalar_bytes + 4 * sizeof(std::uint32_t) + (features.motion ? scalar_bytes : 0) +
+           (features.lights ? scalar_bytes : 0);
 }
 
 /// The names of the features needed, in the order of kFeatureNames.
 std::vector<std::string> feature_names(const Features& features);
 
-inline constexpr Features kEverything{true, true, true, true, true, true, true, true, true};
+inline constexpr Features kEverything{true, true, true, true, true, true, true, true, true, true};
+
+/// All but light sampling.
+inline constexpr Features kAllButLights{true, true, true, true, true, true, true, true, true, false};
 
 /// The sets of features that the engines are compiled for, smallest first. A scene runs on the first that covers it,
 /// counted from kFirstCompiledFeatures on.
-inline constexpr std::array<Features, 3> kCompiledFeatures{{
+inline constexpr std::array<Features, 4> kCompiledFeatures{{
     {},
     {.motion = true, .defocus = true, .metal = true, .fuzz = true, .dielectric = true, .checker = true},
+    kAllButLights,
     kEverything,
 }};
 

@@ -16,6 +16,7 @@
 #include "core/scene/features.h"
 #include "core/scene/scene.h"
 #include "core/shading/camera.h"
+#include "core/shading/light_table.h"
 #include "core/shading/textures.h"
 
 namespace raypool {
@@ -106,6 +107,7 @@ struct SceneTables : ShapeTables<Scalar> {
     std::vector<PlanarRow<Scalar>> planars;    ///< of the last primitives, by id less first_planar()
     std::vector<ImageView<Scalar>> images;     ///< by texture id, beside `textures`
     std::vector<Scalar> texels;
+    LightTable<Scalar> lights;
 
     /// Calls visit(std::vector&) for every table: the one list of them.
     template <class Self, class Visit>
@@ -115,6 +117,8 @@ struct SceneTables : ShapeTables<Scalar> {
         visit(self.planars);
         visit(self.images);
         visit(self.texels);
+        visit(self.lights.rows);
+        visit(self.lights.weights);
         ShapeTables<Scalar>::for_each_table(self, visit);
     }
 };
@@ -134,6 +138,8 @@ struct SceneView : ShapeView<Scalar> {
     std::span<const TextureRow<Scalar>> textures;
     std::span<const PlanarRow<Scalar>> planars;
     std::span<const ImageView<Scalar>> images;
+    std::span<const LightRow<Scalar>> lights;
+    std::span<const Scalar> light_weights;
 
     /// Radiance that a limit of depth cuts off a pixel, on average over its paths: at most this in any channel.
     [[nodiscard]] double truncation_bound(std::int32_t depth) const {
@@ -157,6 +163,8 @@ class CompiledScene : public SceneView<Scalar> {
         this->textures = tables_->textures;
         this->planars = tables_->planars;
         this->images = tables_->images;
+        this->lights = tables_->lights.rows;
+        this->light_weights = tables_->lights.weights;
     }
 
     [[nodiscard]] const SceneTables<Scalar>& tables() const { return *tables_; }

@@ -7,6 +7,7 @@
 #include "core/math/path.h"
 #include "core/math/random.h"
 #include "core/shading/bsdf.h"
+#include "core/shading/lights.h"
 #include "core/shading/roulette.h"
 
 namespace raypool {
@@ -33,15 +34,70 @@ struct Scattered {
     Mask<Real> is_reflected_alive;
 };
 
+/// What light sampling asks and says at a hit: with Features::lights.
+template <class Real>
+struct LightPart {
+    LightSampling sampling = LightSampling::None;
+    Real arriving_density = Real(0);  ///< RayRecord::density of the ray that arrives
+    Mask<Real> may_go_on;             ///< the path may have a segment more
+
+    // Set by scatter(), but for LightSampling::None.
+    Real density = Real(0);     ///< of the direction of what goes on, where lights were sampled too; else 0
+    Mask<Real> has_shadow_ray;  ///< the path brings home `radiance` unless something lies before the light
+    LightSample<Real> light;
+    Vec3<Real> radiance;
+};
+
+/// Weighs what is found on a light by chance, and samples a light where a surface is diffuse. Weights are shares of
+/// what either technique would bring alone: no part of a path brings more than throughput times radiance.
+template <Features features, class Real>
+RAYPOOL_INLINE void share_with_lights(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray, const Real& t,
+                                      const Int<Real>& primitive_id, const Real* row, const PathKey<Real>& key,
+                                      const Uint32<Real>& step, const RandomSeed& seed, const SurfacePoint<Real>& point,
+                                      const SurfaceMaterial<features, Real>& material, LightPart<Real>& lights,
+                                      Scattered<Real>& out) {
+    using Row = SurfaceRow<ScalarOf<Real>>;
+    const bool is_shared = lights.sampling == LightSampling::Mis;
+    if (any(out.is_emitter && lights.arriving_density > Real(0))) {
+        const Real weight = detail::gather<Real>(scene.light_weights.data(), primitive_id);
+        const Mask<Real> is_sampled = out.is_emitter && lights.arriving_density > Real(0) && weight > Real(0);
+        const Real density = light_density<features, Real>(ray, t, weight, row);
+        const Real share = is_shared ? lights.arriving_density / (lights.arriving_density + density) : Real(0);
+        for (int i = 0; i < 3; ++i)
+            out.throughput[i] = select(is_sampled, out.throughput[i] * share, out.throughput[i]);
+    }
+    lights.has_shadow_ray = material.is_diffuse() && lights.may_go_on;
+    lights.density = bsdf_density<features, Real>(point, material, out.direction);
+    if (none(lights.has_shadow_ray)) return;
+
+    Real light_row[Row::kColumns];
+    const std::array<Real, 4> random = random_block<Real>(key, step, RandomPurpose::Light, seed);
+    lights.light = sample_light<features, Real>(scene, out.start, ray.time, random, light_row);
+    const LightSample<Real>& light = lights.light;
+    const Real density = bsdf_density<features, Real>(point, material, light.direction);
+    lights.has_shadow_ray = lights.has_shadow_ray && density > Real(0) && light.t < Real(kInfinity<Real>);
+    if (none(lights.has_shadow_ray)) return;
+    const Ray<Real> shadow_ray{out.start.origin, light.direction, ray.time};
+    const Real weight = detail::gather<Real>(scene.light_weights.data(), light.primitive_id);
+    const Real of_light = light_density<features, Real>(shadow_ray, light.t, weight, light_row);
+    const Real share = density / (is_shared ? of_light + density : of_light);
+    const Vec3<Real> radiance = emitted_radiance<features, Real>(scene, shadow_ray, light.t, light.primitive_id,
+                                                                 light_row, lights.has_shadow_ray);
+    for (int i = 0; i < 3; ++i) lights.radiance[i] = out.throughput[i] * (radiance[i] * share);
+    lights.has_shadow_ray = lights.has_shadow_ray && carries_light<Real>(lights.radiance);
+}
+
 /// Scatters rays that hit primitive `primitive_id` (valid in every lane, also those the caller ignores) at distance t.
 /// `step` is the path's (path_step). A path that can carry nothing any more is not alive. With Splitting::On, the first
 /// `split_depth` hits on glass split a path in two, weighted by Fresnel's reflectance. With `roulette`, paths end by
-/// chance after kHitsBeforeRoulette hits; both branches of a split play with one number.
+/// chance after kHitsBeforeRoulette hits; both branches of a split play with one number. `lights` is not null where
+/// lights may be sampled.
 template <Features features, class Real, Splitting splitting = Splitting::Off>
 RAYPOOL_INLINE Scattered<Real> scatter(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray, const Real& t,
                                        const Int<Real>& primitive_id, const Vec3<Real>& throughput,
                                        const PathKey<Real>& key, const Uint32<Real>& step, const RandomSeed& seed,
-                                       int split_depth = 0, bool roulette = false) {
+                                       int split_depth = 0, bool roulette = false,
+                                       [[maybe_unused]] LightPart<Real>* lights = nullptr) {
     using Row = SurfaceRow<ScalarOf<Real>>;
     Real row[Row::kColumns];
     load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, primitive_id, row);
@@ -72,6 +128,11 @@ RAYPOOL_INLINE Scattered<Real> scatter(const SceneView<ScalarOf<Real>>& scene, c
     const BsdfSample<Real> sample =
         sample_bsdf<features, Real, splitting>(point, material, ray.direction, random, may_split);
     out.direction = sample.direction;
+    if constexpr (features.lights) {
+        if (lights != nullptr && lights->sampling != LightSampling::None)
+            share_with_lights<features, Real>(scene, ray, t, primitive_id, row, key, step, seed, point, material,
+                                              *lights, out);
+    }
     if constexpr (splitting == Splitting::On) {
         out.is_split = sample.is_split;
         out.reflected_direction = sample.reflected_direction;

@@ -1,0 +1,44 @@
+/// The lights of a scene that are sampled: emissive quads and spheres, chosen by their power.
+#pragma once
+
+#include <vector>
+
+#include "core/math/real.h"
+#include "core/scene/scene.h"
+
+namespace raypool {
+
+/// A light: where points on it are, and its entry in the alias table (Vose, "A Linear Algorithm for Generating Random
+/// Numbers with a Given Distribution", 1991). Row i of n is kept with the probability kThreshold, or makes place for
+/// the row kAlias.
+template <class Scalar>
+struct alignas(4 * sizeof(Scalar)) LightRow {
+    enum Column {
+        kPoint = 0,   ///< the corner of a quad, the centre of a sphere at time 0; three
+        kRadius = 3,  ///< of a sphere; 0 of a quad
+        kEdgeU = 4,   ///< of a quad, three; of a sphere the motion of its centre from time 0 to 1
+        kThreshold = 7,
+        kEdgeV = 8,       ///< three
+        kAlias = 11,      ///< the bits of a whole number
+        kPrimitive = 12,  ///< the bits of the primitive's id
+        kColumns = 16
+    };
+    Scalar value[kColumns];
+};
+
+template <class Scalar>
+struct LightTable {
+    std::vector<LightRow<Scalar>> rows;
+    /// By primitive id, and empty where there is no light: the probability that a light is chosen, of a quad divided by
+    /// its area; 0 of what is no light.
+    std::vector<Scalar> weights;
+};
+
+/// Ids are spheres', then quads', then planes', as everywhere. Planes have no end and are no lights.
+template <class Scalar>
+LightTable<Scalar> light_table(const Scene& scene);
+
+extern template LightTable<float> light_table(const Scene&);
+extern template LightTable<double> light_table(const Scene&);
+
+}  // namespace raypool

@@ -1,0 +1,161 @@
+/// Where lights are, seen from a point: a direction toward one is sampled, and the density of a direction is known.
+///
+/// A light is chosen by its power. Of a quad a point is sampled by area; of a sphere a direction by solid angle, within
+/// the cone that it fills (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations",
+/// 1996), and all around where the point is in it.
+#pragma once
+
+#include <numbers>
+
+#include "core/math/random.h"
+#include "core/math/sampling.h"
+#include "core/shading/interaction.h"
+
+namespace raypool {
+
+/// Whether lights are sampled: not at all; alone, where a surface is diffuse; or so that what is
+/// sampled and what is found by chance share the weight (multiple importance sampling by the balance heuristic; Veach
+/// and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995).
+enum class LightSampling : std::uint8_t { None, Light, Mis };
+
+/// A direction toward a light.
+template <class Real>
+struct LightSample {
+    Vec3<Real> direction;    ///< unit
+    Real t;                  ///< how far the light is; infinity where it cannot be seen from here
+    Int<Real> primitive_id;  ///< which it is
+};
+
+namespace detail {
+
+/// table[index], by lane.
+template <class Real>
+RAYPOOL_INLINE Real gather(const ScalarOf<Real>* table, const Int<Real>& index) {
+    if constexpr (Simd<Real>) {
+        return Real([&](auto i) { return table[index[i]]; });
+    } else {
+        return table[index];
+    }
+}
+
+/// 1 - cos of half the angle that a sphere fills: to full precision for one that is small or far.
+template <class Real>
+RAYPOOL_INLINE Real cone_height(const Real& radius, const Real& square_distance) {
+    const Real square_sine = min(radius * radius / square_distance, Real(1));
+    return square_sine / (Real(1) + sqrt(Real(1) - square_sine));
+}
+
+/// Two unit vectors that stand on unit `axis` and on each other (Duff et al., "Building an Orthonormal Basis,
+/// Revisited", JCGT 6(1), 2017).
+template <class Real>
+RAYPOOL_INLINE void make_frame(const Vec3<Real>& axis, Vec3<Real>& u, Vec3<Real>& v) {
+    const Real sign = copysign(Real(1), axis[2]);
+    const Real a = Real(-1) / (sign + axis[2]);
+    const Real b = axis[0] * axis[1] * a;
+    u = vec3<Real>(mad<Real>(sign * axis[0] * axis[0], a, Real(1)), sign * b, -sign * axis[0]);
+    v = vec3<Real>(b, mad<Real>(axis[1] * axis[1], a, sign), -axis[1]);
+}
+
+}  // namespace detail
+
+/// Of solid angle: of sample_light() in the direction of a ray that meets a light at distance t. `weight` is the
+/// light's of LightTable::weights, `row` its SurfaceRow.
+template <Features features, class Real>
+RAYPOOL_INLINE Real light_density(const Ray<Real>& ray, const Real& t, const Real& weight, const Real* row) {
+    using S = ScalarOf<Real>;
+    using Row = SurfaceRow<S>;
+    const Real radius = row[Row::kRadius];
+    Vec3<Real> center = vec3<Real>(row[Row::kCenter], row[Row::kCenter + 1], row[Row::kCenter + 2]);
+    const Real area_density = weight * t * t / abs(dot<Real>(ray.direction, center));  // of a quad this is the normal
+    if constexpr (features.motion) {
+        const Vec3<Real> motion = vec3<Real>(row[Row::kMotion], row[Row::kMotion + 1], row[Row::kMotion + 2]);
+        center = center_at<Real>(center, motion, ray.time);
+    }
+    const Vec3<Real> to = vec3<Real>(center[0] - ray.origin[0], center[1] - ray.origin[1], center[2] - ray.origin[2]);
+    const Real square = dot<Real>(to, to);
+    constexpr S kPi = std::numbers::pi_v<S>;
+    const Real solid_angle =
+        select(square > radius * radius, Real(2 * kPi) * detail::cone_height<Real>(radius, square), Real(4 * kPi));
+    return select(radius > Real(0), weight / solid_angle, area_density);
+}
+
+/// Samples a light, of a scene that has some, from where a ray starts, at `time`, by a block of RandomPurpose::Light.
+/// The light's SurfaceRow, which emitted_radiance() and light_density() read, is put into `row`.
+template <Features features, class Real>
+RAYPOOL_INLINE LightSample<Real> sample_light(const SceneView<ScalarOf<Real>>& scene, const RayStart<Real>& start,
+                                              const Real& time, const std::array<Real, 4>& random, Real* row) {
+    using S = ScalarOf<Real>;
+    using Light = LightRow<S>;
+    using Row = SurfaceRow<S>;
+    const auto load = [&](const Int<Real>& which, Real* light) {
+        load_rows<Light::kColumns, Real>(scene.lights.data()->value, Light::kColumns, which, light);
+    };
+    const auto count = static_cast<S>(scene.lights.size());
+    Real light[Light::kColumns];
+    const Int<Real> drawn = to_int<Real>(min(floor(random[0] * Real(count)), Real(count - 1)));
+    load(drawn, light);
+    load(select(random[3] < light[Light::kThreshold], drawn, bits_of<Real>(light[Light::kAlias])), light);
+
+    LightSample<Real> sample;
+    sample.primitive_id = bits_of<Real>(light[Light::kPrimitive]);
+    load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, sample.primitive_id, row);
+    const auto part = [&](int first) { return vec3<Real>(light[first], light[first + 1], light[first + 2]); };
+    const Real radius = light[Light::kRadius];
+    const Mask<Real> is_sphere = radius > Real(0);
+    const Mask<Real> is_leaving =
+        as_mask<Real>(PlanarMark<Real>::group(row[Row::kRadius], sample.primitive_id) == start.leaving_id);
+    const Vec3<Real>& origin = start.origin;
+    Vec3<Real> place = part(Light::kPoint);
+    if constexpr (features.motion) {
+        if (any(is_sphere)) place = select<Real>(is_sphere, center_at<Real>(place, part(Light::kEdgeU), time), place);
+    }
+    const Vec3<Real> to = vec3<Real>(place[0] - origin[0], place[1] - origin[1], place[2] - origin[2]);
+    sample.direction = vec3<Real>(Real(1), Real(0), Real(0));
+    sample.t = Real(kInfinity<Real>);
+    if (!all(is_sphere)) {
+        const Vec3<Real> across = along<Real>(to, random[1], part(Light::kEdgeU));
+        const Vec3<Real> point = along<Real>(across, random[2], part(Light::kEdgeV));
+        const Mask<Real> is_apart = !is_sphere && dot<Real>(point, point) > Real(0);
+        sample.direction = unit<Real>(select<Real>(is_apart, point, sample.direction));
+        const Vec3<Real> normal = vec3<Real>(row[Row::kCenter], row[Row::kCenter + 1], row[Row::kCenter + 2]);
+        const Vec3<Real> plane = vec3<Real>(row[Row::kMotion], row[Row::kMotion + 1], row[Row::kMotion + 2]);
+        sample.t = plane_distance<Real>(origin, sample.direction, plane, normal, is_leaving || !is_apart);
+    }
+    if (any(is_sphere)) {
+        const Real square = dot<Real>(to, to);
+        const Mask<Real> is_outside = is_sphere && square > radius * radius;
+        const Vec3<Real> axis = unit<Real>(select<Real>(is_outside, to, vec3<Real>(Real(1), Real(0), Real(0))));
+        Vec3<Real> u;
+        Vec3<Real> v;
+        detail::make_frame<Real>(axis, u, v);
+        const Real height = random[1] * detail::cone_height<Real>(radius, select(is_outside, square, Real(1)));
+        const Real sine = sqrt(max(height * (Real(2) - height), Real(0)));
+        const SinCos<Real> turn = sincos_of_turn<Real>(random[2]);
+        Vec3<Real> toward;
+        for (int i = 0; i < 3; ++i)
+            toward[i] = mad<Real>(Real(1) - height, axis[i], sine * mad<Real>(turn.cos, u[i], turn.sin * v[i]));
+        const Vec3<Real> direction =
+            unit<Real>(select<Real>(is_outside, toward, unit_sphere<Real>(random[1], random[2])));
+        sample.direction = select<Real>(is_sphere, direction, sample.direction);
+        const Real met = sphere_distance<Real>(origin, direction, place, radius, is_leaving);
+        // Rounding lets a direction pass the edge, and beside a light that is small or far all of them may.
+        const Mask<Real> is_passed = is_outside && !is_leaving && !(met < Real(kInfinity<Real>));
+        sample.t = select(is_sphere, select(is_passed, dot<Real>(to, direction), met), sample.t);
+    }
+    return sample;
+}
+
+/// What a light sends along `ray`, which meets it at distance `t`. `row` is the SurfaceRow of `primitive_id`.
+template <Features features, class Real>
+RAYPOOL_INLINE Vec3<Real> emitted_radiance(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray, const Real& t,
+                                           const Int<Real>& primitive_id, const Real* row,
+                                           const Mask<Real>& is_wanted) {
+    const SurfaceCode<Int<Real>> code{bits_of<Real>(row[SurfaceRow<ScalarOf<Real>>::kCode])};
+    const SurfacePoint<Real> point = surface_point<features, Real>(ray, t, row);
+    const SurfaceMaterial<features, Real> material{code.material(), row[SurfaceRow<ScalarOf<Real>>::kParameter]};
+    const Vec3<Real> colour = surface_colour<features, Real>(scene, point, primitive_id, row, code, is_wanted);
+    const Real emission = material.emission(point.is_front);
+    return vec3<Real>(colour[0] * emission, colour[1] * emission, colour[2] * emission);
+}
+
+}  // namespace raypool

@@ -1,0 +1,191 @@
+// Light sampling against chance: the same means, whatever shines on whatever; and closed forms by light sampling alone.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+#include "tests/physics/agreement.h"
+#include "tests/physics/test_scene.h"
+
+namespace raypool {
+namespace {
+
+template <class Scalar>
+Rendered render_with(const Scene& scene, LightSampling sampling, std::int64_t spp, std::uint64_t seed = 0,
+                     std::int32_t depth = 20) {
+    RenderSettings settings;
+    settings.end_sample = spp;
+    settings.depth = depth;
+    settings.seed = seed;
+    settings.light_sampling = sampling;
+    return render(recursive::IterativeEngine(), compile<Scalar>(scene), settings);
+}
+
+struct Estimate {
+    double mean, error;
+};
+/// Pixels are independent, but of different expectation: their spread is an upper bound of the error.
+Estimate estimate(const Rendered& rendered) {
+    const std::vector<double> values = pixel_values(rendered);
+    double sum = 0, squares = 0;
+    for (const double value : values) sum += value, squares += value * value;
+    const auto count = static_cast<double>(values.size());
+    const double mean = sum / count;
+    return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / count)};
+}
+
+/// A floor and a wall that see a lamp, with whatever a case adds.
+TestScene corner() {
+    TestScene scene(48, 48, {0.02, 0.03, 0.05});
+    scene.plane({0, 0, 0}, {0, 1, 0}, scene.diffuse(0.7));
+    scene.quad({-3, 0, -3}, {6, 0, 0}, {0, 4, 0}, scene.diffuse(0.5));
+    scene.look({1, 2, 6}, {0, 1, 0}, 50);
+    scene.camera.shutter_close = 1;
+    return scene;
+}
+
+struct Case {
+    const char* name;
+    void (*add)(TestScene&);
+};
+constexpr Case kCases[] = {
+    {"quad",
+     [](TestScene& s) {
+         s.quad({-1, 2.5, -1}, {1.5, 0, 0}, {0, 0, 1.5}, s.emitter(3));
+     }},
+    {"quad_of_one_side",
+     [](TestScene& s) {
+         s.quad({-1, 2.5, -1}, {1.5, 0, 0}, {0, 0.3, 1.5}, s.emitter(3));
+         s.materials.back().front_only = true;
+     }},
+    {"sphere",
+     [](TestScene& s) {
+         s.sphere({0, 1.4, 0}, 0.6, s.emitter(3));
+     }},
+    {"moving_sphere",
+     [](TestScene& s) {
+         s.sphere({-1, 1.4, 0}, 0.5, s.emitter(3));
+         s.spheres.back().center1 = {1, 2, 0.5};
+     }},
+    {"sphere_around_all",
+     [](TestScene& s) {
+         s.sphere({0, 1, 1}, 9, s.emitter(0.6));
+     }},
+    {"lamp_that_touches_the_wall",
+     [](TestScene& s) {
+         s.quad({-1, 1, -3}, {2, 0, 0}, {0, 1.5, 1}, s.emitter(2));
+     }},
+    {"lamp_in_the_plane_of_the_floor",
+     [](TestScene& s) {
+         s.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, s.emitter(2));
+     }},
+    {"plane",
+     [](TestScene& s) {
+         s.plane({0, 5, 0}, {0, 1, 0}, s.emitter(0.5));
+     }},
+    {"checker_lamp",
+     [](TestScene& s) {
+         const std::int32_t lamp = s.emitter(4);
+         s.textures.back().kind = Texture::Kind::CheckerUv;
+         s.textures.back().scale = 0.25;
+         s.materials.back().strength = 1.5;
+         s.quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, lamp);
+     }},
+    {"mirror_and_glass",
+     [](TestScene& s) {
+         s.quad({-1, 2.5, -1}, {2, 0, 0}, {0, 0, 2}, s.emitter(2));
+         s.sphere({-1, 0.7, 0.5}, 0.7, s.mirror(0.9));
+         s.sphere({1, 0.6, 0.5}, 0.6, s.glass(1.5));
+     }},
+    {"many_of_different_power",
+     [](TestScene& s) {
+         for (int i = 0; i < 12; ++i)
+             s.sphere({-2 + 0.35 * i, 0.3 + 0.1 * (i % 5), -1 + 0.4 * (i % 3)}, 0.1 + 0.02 * i,
+                      s.emitter(1 << (i % 4)));
+         s.quad({-2, 3, -2}, {4, 0, 0}, {0, 0, 0.3}, s.emitter(1));
+     }},
+};
+
+class LightSamplingCase : public testing::TestWithParam<Case> {
+  protected:
+    template <class Scalar>
+    static void expect_equal_means() {
+        TestScene scene = corner();
+        GetParam().add(scene);
+        const Estimate chance = estimate(render_with<Scalar>(scene, LightSampling::None, 400));
+        for (const LightSampling sampling : {LightSampling::Mis, LightSampling::Light}) {
+            const Rendered rendered = render_with<Scalar>(scene, sampling, 100, 1);
+            const Estimate found = estimate(rendered);
+            // Both errors are of images with the same structure, which is no noise: compare pixel by pixel.
+            std::vector<double> differences;
+            const std::vector<double> a = pixel_values(render_with<Scalar>(scene, LightSampling::None, 400));
+            const std::vector<double> b = pixel_values(rendered);
+            for (std::size_t i = 0; i < a.size(); ++i) differences.push_back(b[i] - a[i]);
+            EXPECT_TRUE(mean_agrees(differences, 0))
+                << chance.mean << " by chance, " << found.mean << " by light sampling";
+            if (sampling == LightSampling::Mis) EXPECT_EQ(rendered.report.statistics.clamped, 0);
+            EXPECT_EQ(rendered.report.statistics.non_finite, 0);
+        }
+    }
+};
+TEST_P(LightSamplingCase, HasTheMeansOfChanceInFloat) {
+    expect_equal_means<float>();
+}
+TEST_P(LightSamplingCase, HasTheMeansOfChanceInDouble) {
+    expect_equal_means<double>();
+}
+INSTANTIATE_TEST_SUITE_P(Physics, LightSamplingCase, testing::ValuesIn(kCases),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+/// A spot below a sphere: irradiance (r / d)^2 cos, to the noise of light sampling, which the same samples by chance
+/// exceed tenfold.
+TEST(LightSampling, MeetsTheClosedFormOfASphereWithLittleNoise) {
+    TestScene scene(64, 64, Vector3d::Zero());
+    scene.plane({0, 0, 0}, {0, 1, 0}, scene.diffuse(0.8));
+    scene.look({0.5, 1, 8}, {0, 0, 0}, 0.01);
+    scene.sphere({2, 2, 1}, 0.2, scene.emitter(3));
+    const double expected = 0.8 * 3 * (0.2 * 0.2 / 9) * 2 / 3;
+    const Rendered by_chance = render_with<float>(scene, LightSampling::None, 16);
+    for (const LightSampling sampling : {LightSampling::Light, LightSampling::Mis}) {
+        const Rendered rendered = render_with<float>(scene, sampling, 16);
+        EXPECT_TRUE(mean_agrees(pixel_values(rendered), expected));
+        EXPECT_LT(estimate(rendered).error, estimate(by_chance).error / 10);
+        EXPECT_EQ(rendered.report.total(&ThreadReport::shadow_rays), rendered.report.paths());
+    }
+}
+
+/// The last segment that the depth allows may not be one toward a light.
+TEST(LightSampling, KeepsToTheDepth) {
+    TestScene scene = corner();
+    scene.quad({-1, 2.5, -1}, {1.5, 0, 0}, {0, 0, 1.5}, scene.emitter(3));
+    for (const std::int32_t depth : {0, 1, 2, 3}) {
+        const std::vector<double> a = pixel_values(render_with<float>(scene, LightSampling::None, 200, 0, depth));
+        const std::vector<double> b = pixel_values(render_with<float>(scene, LightSampling::Mis, 200, 1, depth));
+        std::vector<double> differences;
+        for (std::size_t i = 0; i < a.size(); ++i) differences.push_back(b[i] - a[i]);
+        if (depth == 0) {
+            EXPECT_EQ(*std::max_element(b.begin(), b.end()), 0);
+        } else {
+            EXPECT_TRUE(mean_agrees(differences, 0)) << depth;
+        }
+    }
+}
+
+/// A closed box whose walls shine and reflect: what is everywhere is radiance / (1 - albedo), and every sample is
+/// bounded.
+TEST(LightSampling, KeepsAFurnaceWithAShiningWall) {
+    TestScene scene(24, 24, Vector3d::Ones());  // a sky of 1 around a half space that shines with 1
+    scene.plane({0, 0, 0}, {0, 1, 0}, scene.diffuse(1));
+    scene.quad({-50, 3, -50}, {100, 0, 0}, {0, 0, 100}, scene.emitter(1));
+    scene.sphere({0, 1, 0}, 0.8, scene.diffuse(1));
+    scene.look({0, 1.5, 4}, {0, 1, 0}, 40);
+    const Rendered rendered = render_with<float>(scene, LightSampling::Mis, 64, 0, 400);
+    EXPECT_TRUE(mean_agrees(pixel_values(rendered), 1));
+    EXPECT_EQ(rendered.report.statistics.clamped, 0);
+}
+
+}  // namespace
+}  // namespace raypool
