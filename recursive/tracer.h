@@ -140,7 +140,7 @@ class Tracer {
             scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key, path.step, seed(), split_depth_,
             rules == Rules::Any && roulette_, features.lights ? &lights : nullptr);
         if constexpr (features.lights) {
-            if (light_sampling_ != LightSampling::None && lights.has_shadow_ray) follow_shadow_ray(path, out, lights);
+            if (lights.has_shadow_ray) follow_shadow_ray(path, out, lights);
         }
         if (out.is_emitter) return finish(out.throughput);
         after.ray = {out.start.origin, out.direction, path.ray.time};

@@ -12,6 +12,8 @@
 
 #include "core/math/path.h"
 #include "core/runtime/loop.h"
+#include "core/shading/camera.h"
+#include "wavefront/ray_record.h"
 
 namespace raypool::wavefront {
 
@@ -24,6 +26,20 @@ struct CameraLanes {
     Uint32<Real> sample;
     int count;  ///< lanes with a path; the others hold the last one's again, or a later sample of its pixel
 };
+
+/// The records of camera rays.
+template <Features features, class Real>
+RAYPOOL_INLINE RayRecord<Real> camera_record(const Camera<ScalarOf<Real>>& camera, const CameraLanes<Real>& lanes,
+                                             const RandomSeed& seed) {
+    RayRecord<Real> record;
+    record.ray = camera_ray<features, Real>(camera, lanes.x, lanes.y, lanes.pixel, lanes.sample, seed);
+    record.throughput = vec3<Real>(Real(1), Real(1), Real(1));
+    record.key = {lanes.pixel, lanes.sample};
+    record.leaving_id = Uint32<Real>(static_cast<std::uint32_t>(kNoPrimitive));
+    record.step = Uint32<Real>(0U);
+    record.density = Real(0);
+    return record;
+}
 
 /// Paths begin .. end - 1 of the samples [first_sample, end_sample) of a range of pixels.
 class CameraPaths {

@@ -13,10 +13,10 @@ namespace raypool::wavefront {
 
 /// The stages of a round. Append is the traffic of records from round to round: what survivors
 /// and split records take to reach their places.
-enum class Stage : std::uint8_t { Generate, Intersect, Sort, Shade, Accumulate, Append };
-inline constexpr std::size_t kStageCount = 6;
-inline constexpr std::array<const char*, kStageCount> kStageNames{"generate", "intersect",  "sort",
-                                                                  "shade",    "accumulate", "append"};
+enum class Stage : std::uint8_t { Generate, Intersect, Sort, Shade, Shadow, Accumulate, Append };
+inline constexpr std::size_t kStageCount = 7;
+inline constexpr std::array<const char*, kStageCount> kStageNames{"generate", "intersect",  "sort",  "shade",
+                                                                  "shadow",   "accumulate", "append"};
 
 /// One round: all threads, or, of per-thread pools, the rounds of that number added up.
 struct RoundReport {

@@ -54,6 +54,8 @@ class RecordStages {
     virtual std::size_t generate(Records& records, std::size_t first, CameraPaths paths) = 0;
     /// Takes records [first, first + count) through one bounce. Returns how many survive, now at the front.
     virtual std::size_t advance(Records& records, std::size_t first, std::size_t count) = 0;
+    /// The unit ends: no record is left. What waits is done.
+    virtual void finish() = 0;
     virtual void report(ThreadReport& work, SampleStatistics& statistics) const = 0;
     /// By level of the trees; none where they are not counted.
     [[nodiscard]] virtual std::span<const ListLevel> lists() const = 0;

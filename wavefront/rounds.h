@@ -145,7 +145,7 @@ class ThreadPoolSession : public PoolSession<Scalar> {
                 visit(item, [&](const CameraPaths& paths, std::int64_t most) { pool.add(paths, most, progress); });
             });
             pool.drain();
-            pool.stages().log().finish();
+            pool.stages().finish();
             pool.stages().report(work, statistics);
             work.wait_s += waited_s;
         });
@@ -242,6 +242,7 @@ class SharedPoolSession : public PoolSession<Scalar> {
                 if (thread == 0) stages.log().occupancy(pool.size(), Trace::Event::Kind::Counter);
                 stages.log().end_round();
             }
+            stages.finish();
             stages.report(work, statistics);
         });
     }

@@ -1,8 +1,7 @@
-/// The stages of a round, for one thread and one batch of records: generate, intersect, shade, accumulate.
+/// The stages of a round, for one thread and one batch of records: generate, intersect, shade, shadow, accumulate.
 ///
 /// Where recursion follows one path through all of its bounces, a stage takes one bounce of many paths. A batch is a
-/// range of a pool; the round loops in rounds.h cut the pool into batches. Survivors
-/// of a batch end up at its front.
+/// range of a pool; the round loops in rounds.h cut the pool into batches. Survivors of a batch end up at its front.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +13,9 @@
 #include "wavefront/accumulator.h"
 #include "wavefront/beam.h"
 #include "wavefront/intersect_stage.h"
+#include "wavefront/material_sort.h"
 #include "wavefront/record_stages.h"
+#include "wavefront/shadow_stage.h"
 
 namespace raypool::wavefront {
 
@@ -30,6 +31,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
     using Scalar = ScalarOf<Real>;
     using typename Base::Records;
     static constexpr int kRays = kLanes<Real>;
+    using Shadow = std::conditional_t<features.lights, ShadowStage<features, Real, Work>, NoShadowStage<Scalar>>;
 
     /// For batches of at most `most_records`.
     Stages(const RenderContext<Scalar>& context, std::size_t most_records, int thread)
@@ -37,17 +39,19 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
           context_(context),
           thread_(thread),
           intersect_(context.scene, context.pool.intersection, most_records),
-          sort_scratch_(context.pool.sort == Sort::None ? 0 : most_records),
+          shadow_(context.scene, context.pool.intersection, most_shadow_rays(context, most_records)),
+          sort_(context.pool.sort, most_records),
           converter_(context.fixed) {
-        contributions_.reserve(std::max(most_records, kMostContributions) + kBeamRays + kRays);
+        contributions_.reserve(most_contributions(context, most_records));
     }
 
     /// The memory of one of these.
     static std::size_t bytes(const RenderContext<Scalar>& context, std::size_t most_records) {
         return IntersectStage<features, Real, Work>::bytes(context.scene, most_records) +
                Records::bytes(most_overflow(context, most_records)) +
-               (context.pool.sort == Sort::None ? 0 : most_records * sizeof(double)) +
-               Contributions<Scalar>::bytes(std::max(most_records, kMostContributions) + kBeamRays + kRays);
+               MaterialSort<Scalar>::bytes(context.pool.sort, most_records) +
+               Contributions<Scalar>::bytes(most_contributions(context, most_records)) +
+               Shadow::bytes(context.scene, most_shadow_rays(context, most_records));
     }
 
     void begin() override {
@@ -67,7 +71,9 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         while (!paths.is_done()) {
             if (context_.pool.camera == CameraStage::Staged) {
                 const CameraLanes<Real> lanes = paths.template next<Real>(kRays);
-                records.template append<Real>(first + written, camera_record(lanes), (1U << lanes.count) - 1, end);
+                records.template append<Real>(
+                    first + written, camera_record<features, Real>(context_.scene.camera, lanes, context_.seed),
+                    (1U << lanes.count) - 1, end);
                 written += static_cast<std::size_t>(lanes.count);
             } else {
                 written += first_bounce(records, first + written, end, paths);
@@ -92,6 +98,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         const std::size_t survivors = shade(records, first, count);
         log_.stop(Stage::Shade, count);
 
+        trace_shadow_rays();
         const std::size_t ends = contributions_.count();
         accumulate();
         log_.stop(Stage::Accumulate, ends);
@@ -100,31 +107,14 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
     }
 
     // What advance() is made of, in its order, for benchmarks of one stage.
-
     /// Finds the closest hits of records [first, first + count), which then lie in stream().
     void intersect(const Records& records, std::size_t first, std::size_t count) {
         intersect_.run(records, first, count);
     }
 
-    /// A counting sort by material kind (misses last) of records and hits. The settings must ask for it.
+    /// By material. The settings must ask for it.
     void sort_by_material(Records& records, std::size_t first, std::size_t count) {
-        constexpr std::size_t kKinds = Material::kKindCount + 1;
-        const auto kind = [&](std::size_t i) -> std::size_t {
-            const std::int32_t id = stream().primitive_id()[i];
-            if (id < 0) return kKinds - 1;
-            const auto& row = context_.scene.surfaces[static_cast<std::size_t>(id)];
-            const Int<Scalar> code = bits_of<Scalar>(row.value[SurfaceRow<Scalar>::kCode]);
-            return static_cast<std::size_t>(SurfaceCode<Int<Scalar>>{code}.material());
-        };
-        std::size_t place[kKinds + 1] = {};
-        for (std::size_t i = 0; i < count; ++i) ++place[kind(i) + 1];
-        for (std::size_t k = 1; k <= kKinds; ++k) place[k] += place[k - 1];
-        std::uint32_t* order = stream().lists();
-        for (std::size_t i = 0; i < count; ++i) order[place[kind(i)]++] = static_cast<std::uint32_t>(i);
-        auto* scratch = reinterpret_cast<std::byte*>(sort_scratch_.data());
-        records.permute(first, count, order, scratch);
-        permute(stream().distance(), order, count, scratch);
-        permute(stream().primitive_id(), order, count, scratch);
+        sort_.run(context_.scene, records, first, count, stream());
     }
 
     /// Collects what ended as contributions and moves the survivors to the front. Returns how many they are.
@@ -147,6 +137,12 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
     RayStream<Scalar>& stream() { return intersect_.stream(); }
     [[nodiscard]] std::size_t contribution_count() const { return contributions_.count(); }
 
+    void finish() override {
+        trace_shadow_rays();
+        accumulate();
+        log_.finish();
+    }
+
     void report(ThreadReport& work, SampleStatistics& statistics) const override {
         work.paths = paths_;
         work.segments = segments_;
@@ -167,20 +163,15 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
     /// Kept back in the fused camera stage; they fit into the first-level cache.
     static constexpr std::size_t kMostContributions = 1024;
 
+    static std::size_t most_shadow_rays(const RenderContext<Scalar>& context, std::size_t most_records) {
+        const bool has_some = features.lights && context.settings.light_sampling != LightSampling::None;
+        return has_some ? most_records + kBeamRays + kRays : 0;
+    }
+    static std::size_t most_contributions(const RenderContext<Scalar>& context, std::size_t most_records) {
+        return std::max(most_records, kMostContributions) + kBeamRays + kRays + most_shadow_rays(context, most_records);
+    }
     static std::size_t most_overflow(const RenderContext<Scalar>& context, std::size_t most_records) {
         return context.settings.split_depth > 0 ? most_records : 0;
-    }
-
-    RAYPOOL_INLINE RayRecord<Real> camera_record(const CameraLanes<Real>& lanes) const {
-        RayRecord<Real> record;
-        record.ray = camera_ray<features, Real>(context_.scene.camera, lanes.x, lanes.y, lanes.pixel, lanes.sample,
-                                                context_.seed);
-        record.throughput = vec3<Real>(Real(1), Real(1), Real(1));
-        record.key = {lanes.pixel, lanes.sample};
-        record.leaving_id = Uint32<Real>(static_cast<std::uint32_t>(kNoPrimitive));
-        record.step = Uint32<Real>(0U);
-        record.density = Real(0);
-        return record;
     }
 
     /// Takes the next camera rays, of one register or of a beam, through their first bounce. Returns the survivors.
@@ -197,7 +188,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
             const CameraLanes<Real> lanes = paths.template next<Real>(kRays);
             count += lanes.count;
             active[packets] = (1U << lanes.count) - 1;
-            record[packets] = camera_record(lanes);
+            record[packets] = camera_record<features, Real>(context_.scene.camera, lanes, context_.seed);
             rays[packets] = wide_camera_rays<Real>(record[packets].ray);
         }
         if constexpr (Simd<Real>) {
@@ -225,7 +216,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         const unsigned hits = mask_bits(is_hit) & active;
         if (const unsigned misses = active & ~hits; misses != 0) {
             const Vec3<Real> sky = sky_radiance<Real>(context_.scene.sky, record.ray.direction);
-            contributions_.template put<Real>(record.key.pixel, product(record.throughput, sky), misses);
+            contributions_.template put<Real>(record.key.pixel, product<Real>(record.throughput, sky), misses);
         }
         if (hits == 0) return 0;
 
@@ -240,30 +231,36 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
             context_.scene, record.ray, hit.t, id, record.throughput, record.key, record.step, context_.seed,
             context_.settings.split_depth, context_.settings.roulette, features.lights ? &lights : nullptr);
         if constexpr (features.lights) {
-            if (lights.sampling != LightSampling::None) follow_shadow_rays(record, out, lights, hits);
+            if (const unsigned bits = mask_bits(lights.has_shadow_ray) & hits; bits != 0) {
+                if (!shadow_.has_room()) {
+                    shadow_.run(contributions_, intersect_.work());
+                    accumulate();
+                }
+                shadow_.add(record, out, lights, bits);
+                shadow_rays_ += std::popcount(bits);
+            }
         }
         if constexpr (features.emissive) {
             if (const unsigned ends = mask_bits(out.is_emitter) & hits; ends != 0)
                 contributions_.template put<Real>(record.key.pixel, out.throughput, ends);
         }
         const Uint32<Real> step = record.step + Uint32<Real>(1U);
-        const Mask<Real> is_deepest = this->is_deepest(record.step);
-        const unsigned alive = mask_bits(out.is_alive && !is_deepest) & hits;
+        const unsigned alive = mask_bits(out.is_alive && !is_deepest(record.step)) & hits;
         RayRecord<Real> next = record;
         next.ray.origin = out.start.origin;
-        next.leaving_id = id_bits(out.start.leaving_id);
+        next.leaving_id = id_bits<Real>(out.start.leaving_id);
         next.step = step;
         if constexpr (features.lights) next.density = lights.density;
         if constexpr (splitting == Splitting::On) {
             const Uint32<Real> reflected = path_step::reflected_branch<Uint32<Real>>(step);
-            const unsigned alive_too = mask_bits(out.is_reflected_alive && !is_deepest) & hits;
+            const unsigned alive_too = mask_bits(out.is_reflected_alive && !is_deepest(record.step)) & hits;
             next.ray.direction = out.reflected_direction;
             next.throughput = out.reflected_throughput;
             next.step = reflected;
             overflow_.template append<Real>(overflow_count_, next, alive_too, overflow_count_ + kRays);
             overflow_count_ += static_cast<std::size_t>(std::popcount(alive_too));
-            next.step =
-                select_bits(mask_bits(out.is_split), reflected + Uint32<Real>(1U << path_step::kBranchShift), step);
+            next.step = select_bits<Real>(mask_bits(out.is_split),
+                                          reflected + Uint32<Real>(1U << path_step::kBranchShift), step);
         }
         if (alive == 0) return 0;
         next.ray.direction = out.direction;
@@ -278,55 +275,22 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
                Real(static_cast<Scalar>(context_.settings.depth));
     }
 
-    /// Adds what comes from lights that nothing hides, of the hits in `bits`.
-    void follow_shadow_rays(const RayRecord<Real>& record, const Scattered<Real>& out, const LightPart<Real>& lights,
-                            unsigned bits) {
-        const LightSample<Real>& light = lights.light;
-        unsigned free = 0;
-        for (unsigned left = mask_bits(lights.has_shadow_ray) & bits; left != 0; left &= left - 1) {
-            const int i = std::countr_zero(left);
-            ++shadow_rays_;
-            const auto part = [i](const Vec3<Real>& v) {
-                return vec3<Scalar>(lane(v[0], i), lane(v[1], i), lane(v[2], i));
-            };
-            const Ray<Scalar> ray{part(out.start.origin), part(light.direction), lane(record.ray.time, i)};
-            const Hit<Scalar> at{lane(light.t, i), lane(light.primitive_id, i)};
-            const auto leaving_id = static_cast<std::int32_t>(lane(out.start.leaving_id, i));
-            if (!is_occluded<features>(context_.scene, ray, leaving_id, at, intersect_.work())) free |= 1U << i;
+    /// Traces the shadow rays that wait, and adds what they bring.
+    void trace_shadow_rays() {
+        if constexpr (features.lights) {
+            if (shadow_.count() == 0) return;
+            log_.start();
+            const std::size_t rays = shadow_.run(contributions_, intersect_.work());
+            log_.stop(Stage::Shadow, rays);
         }
-        if (free != 0) contributions_.template put<Real>(record.key.pixel, lights.radiance, free);
-    }
-
-    static Uint32<Real> select_bits(unsigned bits, const Uint32<Real>& yes, const Uint32<Real>& no) {
-        if constexpr (Simd<Real>) {
-            return Uint32<Real>([&](auto i) { return (bits >> i & 1U) != 0 ? lane(yes, i) : lane(no, i); });
-        } else {
-            return bits != 0 ? yes : no;
-        }
-    }
-    RAYPOOL_INLINE static Vec3<Real> product(const Vec3<Real>& a, const Vec3<Real>& b) {
-        return vec3<Real>(a[0] * b[0], a[1] * b[1], a[2] * b[2]);
-    }
-    RAYPOOL_INLINE static Uint32<Real> id_bits(const Int<Real>& id) {
-        if constexpr (Simd<Real>) {
-            return stdx::static_simd_cast<Uint32<Real>>(id);
-        } else {
-            return static_cast<std::uint32_t>(id);
-        }
-    }
-
-    template <class T>
-    static void permute(T* values, const std::uint32_t* order, std::size_t count, std::byte* scratch) {
-        T* sorted = reinterpret_cast<T*>(scratch);
-        for (std::size_t i = 0; i < count; ++i) sorted[i] = values[order[i]];
-        std::copy_n(sorted, count, values);
     }
 
     const RenderContext<Scalar>& context_;
     int thread_;
     IntersectStage<features, Real, Work> intersect_;
+    Shadow shadow_;
     Contributions<Scalar> contributions_;
-    std::vector<double> sort_scratch_;
+    MaterialSort<Scalar> sort_;
     SampleConverter converter_;
     std::int64_t paths_ = 0;
     std::int64_t segments_ = 0;

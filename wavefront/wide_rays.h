@@ -24,6 +24,28 @@ RAYPOOL_INLINE Int<Real> signed_ids(const Uint32<Real>& ids) {
     using Signed = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
     return stdx::static_simd_cast<Int<Real>>(stdx::static_simd_cast<Signed>(ids));
 }
+/// The inverse, for a scalar too.
+template <class Real>
+RAYPOOL_INLINE Uint32<Real> id_bits(const Int<Real>& id) {
+    if constexpr (Simd<Real>) {
+        return stdx::static_simd_cast<Uint32<Real>>(id);
+    } else {
+        return static_cast<std::uint32_t>(id);
+    }
+}
+/// Whole numbers by the bits of a mask.
+template <class Real>
+RAYPOOL_INLINE Uint32<Real> select_bits(unsigned bits, const Uint32<Real>& yes, const Uint32<Real>& no) {
+    if constexpr (Simd<Real>) {
+        return Uint32<Real>([&](auto i) { return (bits >> i & 1U) != 0 ? lane(yes, i) : lane(no, i); });
+    } else {
+        return bits != 0 ? yes : no;
+    }
+}
+template <class Real>
+RAYPOOL_INLINE Vec3<Real> product(const Vec3<Real>& a, const Vec3<Real>& b) {
+    return vec3<Real>(a[0] * b[0], a[1] * b[1], a[2] * b[2]);
+}
 /// Camera rays, which start on nothing.
 template <class Real>
 RAYPOOL_INLINE WideRays<Real> wide_camera_rays(const Ray<Real>& ray) {

@@ -41,11 +41,11 @@ struct LightPart {
     Real arriving_density = Real(0);  ///< RayRecord::density of the ray that arrives
     Mask<Real> may_go_on;             ///< the path may have a segment more
 
-    // Set by scatter(), but for LightSampling::None.
-    Real density = Real(0);     ///< of the direction of what goes on, where lights were sampled too; else 0
-    Mask<Real> has_shadow_ray;  ///< the path brings home `radiance` unless something lies before the light
-    LightSample<Real> light;
-    Vec3<Real> radiance;
+    // Set by scatter(), unless the sampling is None.
+    Real density = Real(0);  ///< of the direction of what goes on, where lights were sampled too; else 0
+    Mask<Real> has_shadow_ray = Mask<Real>(false);
+    LightSample<Real> light;  ///< what the shadow ray is to reach
+    Vec3<Real> radiance;      ///< what the path brings home if nothing lies before the light
 };
 
 /// Weighs what is found on a light by chance, and samples a light where a surface is diffuse. Weights are shares of
