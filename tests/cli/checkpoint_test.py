@@ -1,21 +1,22 @@
 """Checkpoints, parts and what happens to them: a render ends in the same bits, or says why it does not.
 
-RAYPOOL_KILLS=50 kills a render so many times (a few, where it is not set). The last test prints the table of faults.
+RAYPOOL_KILLS=50 kills a render so many times (a few, where it is not set).
 """
 
 import collections
-import contextlib
 import ctypes
 import ctypes.util
 import json
 import os
 import random
-import resource
 import signal
-import subprocess
 import time
 
-from command import CommandTest, main
+from checkpoint_case import RENDER, SMALL, CheckpointCase, render, small
+from command import main
+
+STOPS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGXCPU")
+
 
 def xxhash(content):
     """The 16 hexadecimal digits of XXH3."""
@@ -25,54 +26,7 @@ def xxhash(content):
     return f"{library.XXH3_64bits(content, len(content)):016x}".encode()
 
 
-def render(**changes):
-    """The arguments of the render that tests interrupt, some of them changed."""
-    options = {"width": 120, "spp": 300, "threads": 2, **changes}
-    return ("render", "paper", *(text for name, value in options.items() for text in ("--" + name, str(value))))
-
-
-RENDER = render()
-
-
-def small(**changes):
-    return render(width=40, **changes)
-
-
-SMALL = small()
-STOPS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGXCPU")
-
-
-def mounted(what, where, *options):
-    """Whether it could be; only root may."""
-    return subprocess.run(["mount", *options, what, where], stderr=subprocess.DEVNULL, check=False).returncode == 0
-
-
-class CheckpointTest(CommandTest):
-    table = []
-
-    def whole(self):
-        return self.hash_of(self.run_well(*RENDER))
-
-    def hash_of(self, result):
-        return result.stdout.split("hash ")[1].split()[0]
-
-    def start(self, *arguments, **keywords):
-        process = subprocess.Popen([self.command, *arguments, "--every", "0"], cwd=self.folder, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True, **keywords)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.kill)
-        return process
-
-    def wait_for(self, name, process):
-        """Until the file is there, which the process must outlive."""
-        while not (self.folder / name).exists():
-            self.assertIsNone(process.poll(), "ended before its first checkpoint")
-            time.sleep(0.005)
-
-    def note(self, fault, tries, lost, wrong):
-        self.table.append((fault, tries, lost, wrong))
-        self.assertEqual((lost, wrong), (0, 0), fault)
-
+class CheckpointTest(CheckpointCase):
     def test_signal_leaves_a_checkpoint_and_a_picture_and_says_how_to_go_on(self):
         expected = self.whole()
         for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
@@ -219,25 +173,6 @@ class CheckpointTest(CommandTest):
         process.terminate()
         self.assertIn("goes on from there", process.communicate(timeout=60)[1])
 
-    def test_output_that_fails_costs_no_other(self):
-        disk = self.folder / "disk"
-        disk.mkdir()
-        if not mounted("tmpfs", disk, "-t", "tmpfs", "-o", "size=4k"):
-            self.skipTest("only root may mount a small disk")
-        self.addCleanup(subprocess.run, ["umount", disk], check=True)
-        for lost in ("--checkpoint", "-o", "--stats", "--trace"):
-            files = {"--checkpoint": "c.sums", "-o": "a.pfm", "--stats": "s.json", "--trace": "t.json"}
-            result = self.run_command(*SMALL, *(text for option, file in files.items() for text in (
-                option, f"disk/{file}" if option == lost else file)), "--every", 1000, "--engine", "recursive", "--grain",
-                                      "line")
-            if lost == "--stats":  # a small file
-                self.assertEqual(result.returncode, 0)
-                files[lost] = "disk/s.json"
-            else:
-                self.assert_one_line(result, 2, f"disk/{files.pop(lost)}", "No space left")
-            for file in files.values():
-                (self.folder / file).unlink()
-
     def test_plain_tasks_of_a_launcher_are_refused_unless_each_has_its_own_samples(self):
         slurm = {"SLURM_STEP_NUM_TASKS": "4", "SLURM_NTASKS": "4", "SLURM_PROCID": "1"}
         self.assert_refused("render", "scene.json", "-o", "a.png", named=["4 tasks", "--samples", "mpi"], environment=slurm)
@@ -247,82 +182,6 @@ class CheckpointTest(CommandTest):
             self.assert_refused(*command, named=["4 tasks", command[0]], environment=slurm)
         self.run_well("render", "scene.json", environment={**slurm, "SLURM_STEP_NUM_TASKS": "1"})
         self.run_well("render", "scene.json", environment={"SLURM_NTASKS": "4"})  # a batch script runs once
-
-    def test_full_disk_is_an_error_and_leaves_the_last_checkpoint(self):
-        expected = self.whole()
-        self.run_well(*RENDER, "--samples", "0:10", "--checkpoint", "c.sums")
-        before = (self.folder / "c.sums").read_bytes()
-        limit = (len(before) // 2, len(before) // 2)
-        result = self.run_command(*RENDER, "--checkpoint", "c.sums", "--resume", "--every", 0,
-                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit))
-        self.assert_one_line(result, 2, "c.sums", "cannot write")
-        wrong = (self.folder / "c.sums").read_bytes() != before
-        lost = self.hash_of(self.run_well(*RENDER, "--checkpoint", "c.sums", "--resume")) != expected
-        self.note("no room for the file (RLIMIT_FSIZE)", 1, int(lost), int(wrong))
-        self.assertEqual(set(self.listing()), {"c.sums", "scene.json"})
-
-    def assert_disk_is_refused(self, fault, folder, finish, *cause):
-        """Images, figures and checkpoints into the folder are refused; what was there stays, and the render can go on."""
-        expected = self.hash_of(self.run_well(*SMALL))
-        before = {path.name: path.read_bytes() for path in folder.iterdir()}
-        new = [("-o", folder / f"new.{kind}") for kind in ("png", "exr", "pfm")]
-        new += [("--stats", folder / "new.json"), ("--trace", folder / "trace.json"), ("--checkpoint", folder / "new.sums")]
-        old = [("-o", folder / "old.png"), ("--checkpoint", folder / "c.sums", "--resume", "--every", 0)]
-        tries = lost = wrong = 0
-        for options in (*new, *old):
-            result = self.run_command(*SMALL, *options)
-            self.assert_one_line(result, 2, str(options[1]), *cause)
-            tries += 1
-            wrong += {path.name: path.read_bytes() for path in folder.iterdir()} != before
-        finish()
-        result = self.run_command(*SMALL, "--checkpoint", folder / "c.sums", "--resume")
-        lost += result.returncode != 0 or self.hash_of(result) != expected
-        self.note(fault, tries, lost, wrong)
-
-    def keep_old_files(self, disk):
-        self.run_well(*SMALL, "--samples", "0:10", "--checkpoint", disk / "c.sums")
-        (disk / "old.png").write_bytes(b"old")
-
-    def test_full_disk_of_its_own_is_an_error_and_leaves_what_was_there(self):
-        disk = self.folder / "disk"
-        disk.mkdir()
-        if not mounted("tmpfs", disk, "-t", "tmpfs", "-o", "size=512k"):
-            self.skipTest("only root may mount a small disk")
-        self.addCleanup(subprocess.run, ["umount", disk], check=True)
-        self.keep_old_files(disk)
-        with open(disk / "filler", "wb", buffering=0) as filler, contextlib.suppress(OSError):
-            while filler.write(bytes(512)):
-                pass
-        self.assert_disk_is_refused("no room on the disk (a small tmpfs)", disk, (disk / "filler").unlink,
-                                    "No space left")
-
-    def test_read_only_folder_is_an_error_before_anything_is_rendered(self):
-        """Rights do not bind root: a disk that is mounted for reading does."""
-        disk = self.folder / "disk"
-        disk.mkdir()
-        self.keep_old_files(disk)
-        if os.geteuid() != 0:
-            files = (disk / "c.sums", disk / "old.png")
-            for file in files:
-                file.chmod(0o444)
-            disk.chmod(0o555)
-            finish = lambda: [path.chmod(0o755) for path in (disk, *files)]
-            self.addCleanup(finish)
-        elif mounted(disk, disk, "--bind") and mounted("none", disk, "-o", "remount,bind,ro"):
-            finish = lambda: subprocess.run(["mount", "-o", "remount,bind,rw", disk], check=True)
-            self.addCleanup(subprocess.run, ["umount", disk], check=True)
-        else:
-            self.skipTest("may not mount")
-        self.assert_disk_is_refused("a folder that is read-only", disk, finish)
-
-    def test_output_to_a_full_device_is_an_error(self):
-        self.assert_one_line(self.run_command(*render(spp=1), "-o", "/dev/full"), 2, "/dev/full")
-        self.assert_one_line(self.run_command(*render(spp=1), "--checkpoint", "/dev/full"), 2, "/dev/full")
-
-    def test_memory_that_is_not_there_is_an_error(self):
-        result = self.run_command("render", "paper", "--width", 20000, "--spp", 1, "--threads", 1,
-                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30)))
-        self.assert_one_line(result, 2, "memory")
 
     def test_parts_in_any_order_are_the_whole(self):
         expected = self.whole()
@@ -391,12 +250,6 @@ class CheckpointTest(CommandTest):
         (self.folder / "bad.sums").write_text("{}\n")
         self.assert_refused("merge", "bad.sums", named="bad.sums")
         self.assert_refused(*RENDER, "--checkpoint", "absent/c.sums", named="absent")
-
-    @classmethod
-    def tearDownClass(cls):
-        for fault, tries, lost, wrong in cls.table:
-            print(f"| {fault} | {tries} | {lost} | {wrong} |")
-        super().tearDownClass()
 
 
 if __name__ == "__main__":

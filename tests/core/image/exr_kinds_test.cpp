@@ -292,15 +292,5 @@ TEST(ExrKinds, RefusesWhatHasNoColourOrTilesThatAreNotThere) {
     EXPECT_EQ(refusal(folder / "tiles.exr"), "the file ends too early");
 }
 
-TEST(Pfm, GreyAndLinesThatEndInTwoBytesAreRead) {
-    const ScratchFolder folder;
-    set_file_text(folder / "grey.pfm", std::string("Pf\n2 1\n-1.0\n\0\0\x80\x3f\0\0\0\x40", 20));
-    EXPECT_EQ(read_image(folder / "grey.pfm").rgb, (std::vector<float>{1, 1, 1, 2, 2, 2}));
-    set_file_text(folder / "grey_big.pfm", std::string("Pf\n2 1\n1.0\n\x3f\x80\0\0\x40\0\0\0", 19));
-    EXPECT_EQ(read_image(folder / "grey_big.pfm").rgb, (std::vector<float>{1, 1, 1, 2, 2, 2}));
-    set_file_text(folder / "lines.pfm", std::string("PF\r\n1 1\r\n-1.0\r\n\0\0\x80\x3f\0\0\0\x40\0\0\0\xc0", 27));
-    EXPECT_EQ(read_image(folder / "lines.pfm").rgb, (std::vector<float>{1, 2, -2}));
-}
-
 }  // namespace
 }  // namespace raypool
