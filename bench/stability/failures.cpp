@@ -23,12 +23,6 @@ NaiveVariant variant_named(const std::string& name) {
     return static_cast<NaiveVariant>(1 + (found - std::begin(kVariantNames)));
 }
 
-Image render(const Scene& scene, const RenderSettings& settings, const auto& render_into, double max_radiance) {
-    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, max_radiance));
-    render_into(framebuffer);
-    return framebuffer.image(settings.end_sample);
-}
-
 }  // namespace
 
 const std::vector<Failure>& all_failures() {
@@ -48,13 +42,14 @@ FailureImages render_failure(NaiveVariant variant, const Scene& scene, const Ren
     const bool is_id_alone = variant == NaiveVariant::IdAlone;
     const CompiledScene<float> naive = is_id_alone ? compile<float>(scene, no_coincidence(scene)) : narrow;
     const recursive::IterativeEngine engine;
-    const double most = narrow.max_radiance;
-    return {render(
-                scene, settings, [&](Framebuffer& f) { render_naively(variant, naive, settings, f); }, most),
-            render(
-                scene, settings, [&](Framebuffer& f) { engine.render(narrow, settings, f); }, most),
-            render(
-                scene, settings, [&](Framebuffer& f) { engine.render(wide, settings, f); }, most)};
+    const auto image = [&](const auto& render) {
+        Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, narrow.max_radiance));
+        render(framebuffer);
+        return framebuffer.image(settings.end_sample);
+    };
+    return {image([&](Framebuffer& f) { render_naively(variant, naive, settings, f); }),
+            image([&](Framebuffer& f) { engine.render(narrow, settings, f); }),
+            image([&](Framebuffer& f) { engine.render(wide, settings, f); })};
 }
 
 double changed_share(const Image& image, const Image& reference) {
