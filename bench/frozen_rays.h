@@ -15,19 +15,18 @@
 
 namespace raypool {
 
-using Records = wavefront::RayColumns<kPaper, float>;
-
 inline constexpr std::int64_t kFrozenSpp = 16;
 inline constexpr int kFrozenBatches[] = {4096, 65536};  ///< as a thread works on, and as a whole shared pool
 
-/// The stages of one thread with all that they need. Denormals are flushed while it lives, as when an engine renders;
-/// rigs of a thread must go in the reverse order of their coming.
+/// The stages of one thread with all that they need; radiance goes to `recorder`, where there is one. Denormals are
+/// flushed while it lives, as when an engine renders; rigs of a thread must go in the reverse order of their coming.
 template <class Real>
 class StageRig {
   public:
     using Stages = wavefront::Stages<kPaper, Real, NoTestCount, Splitting::Off>;
 
-    StageRig(const wavefront::PoolSettings& pool, std::size_t most_records)
+    StageRig(const wavefront::PoolSettings& pool, std::size_t most_records,
+             wavefront::AccumulatorBase<float>* recorder = nullptr)
         : pool_(pool),
           framebuffer_(paper_scene().width, paper_scene().height, roomy()),
           accumulator_(wavefront::make_accumulator<float>(pool.accumulator, framebuffer_, 1)),
@@ -36,7 +35,7 @@ class StageRig {
                    pool_,
                    random_seed(settings_.seed, settings_.sampler),
                    framebuffer_.fixed_point(),
-                   accumulator_.get()},
+                   recorder != nullptr ? recorder : accumulator_.get()},
           stages_(context_, most_records, 0) {}
     StageRig(const StageRig&) = delete;
     StageRig& operator=(const StageRig&) = delete;
