@@ -4,7 +4,6 @@
 /// StageRig is what it takes to drive the stages of wavefront/stages.h by hand.
 #pragma once
 
-#include <array>
 #include <cstring>
 #include <map>
 #include <string>
@@ -132,19 +131,12 @@ bool same_bits(const T* a, const T* b, std::size_t count) {
 
 /// Whether the first `count` records have the same bits.
 inline bool same_records(const Records& a, const Records& b, std::size_t count) {
-    using Bytes = std::array<std::byte, ray_record_bytes(kPaper, sizeof(float))>;
-    const auto bytes_of = [](const Records& records, std::size_t i) {
-        Bytes bytes;
-        std::byte* to = bytes.data();
-        const wavefront::RayRecord<float> record = records.load<float>(i);
-        wavefront::for_each_field<kPaper>(record, [&](const auto& field) {
-            std::memcpy(to, &field, sizeof(field));
-            to += sizeof(field);
-        });
-        return bytes;
-    };
-    for (std::size_t i = 0; i < count; ++i)
-        if (bytes_of(a, i) != bytes_of(b, i)) return false;
+    using Record = wavefront::RayRecord<float>;
+    static_assert(sizeof(Record) == sizeof(Ray<float>) + sizeof(Vec3<float>) + 4 * sizeof(float), "no gaps between");
+    for (std::size_t i = 0; i < count; ++i) {
+        const Record records[] = {a.load<float>(i), b.load<float>(i)};
+        if (!same_bits(&records[0], &records[1], 1)) return false;
+    }
     return true;
 }
 

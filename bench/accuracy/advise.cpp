@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/accuracy/changes.h"
 #include "core/base/error.h"
 #include "core/film/rare_events.h"
 #include "core/runtime/settings_text.h"

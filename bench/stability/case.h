@@ -5,8 +5,8 @@
 ///
 /// The study `stability` draws the curves and times the methods; tests/stability/ asserts the sharp points. Everything
 /// here is deterministic: inputs come from fixed seeds, and errors are judged by a wider oracle (128-bit numbers, long
-/// double) or a closed form. Ours are the kernels of core/, instantiated; what several families or the failed images need
-/// beside them lies in bench/naive/.
+/// double) or a closed form. Ours are the kernels of core/, instantiated; what several families or the failed images
+/// need beside them lies in bench/naive/.
 #pragma once
 
 #include <cstdint>

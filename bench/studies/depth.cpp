@@ -91,9 +91,9 @@ std::vector<Cells> survival_rows(const StudyScene& scene, RenderSettings setting
                                  const std::vector<std::int64_t>& depths) {
     std::map<std::int64_t, HalvesRender> renders;
     const auto at = [&](std::int64_t depth) -> const HalvesRender& {
-        const auto found = renders.find(depth);
-        return found != renders.end() ? found->second
-                                      : renders.emplace(depth, render_halves(scene, settings, depth)).first->second;
+        HalvesRender& render = renders[depth];
+        if (render.paths == 0) render = render_halves(scene, settings, depth);
+        return render;
     };
     const std::int64_t half = settings.end_sample / 2;
     const HalvesRender& reference = at(depths.back());

@@ -44,25 +44,18 @@ using BeginFunction = std::unique_ptr<RenderSession> (*)(const CompiledScene<flo
 BeginFunction iterative_begin(std::size_t set);
 BeginFunction pool_begin(std::size_t set);
 
-/// The pool's compile slowly, so they are compiled in three parts of so many sets (features_pool.cpp).
+/// They compile slowly, so they are compiled in three parts of so many sets (feature_engines.cpp).
 inline constexpr std::size_t kPartSets = 4;
+struct FeatureFunctions {
+    BeginFunction iterative, pool;
+};
 template <std::size_t part>
-BeginFunction pool_begin_of_part(std::size_t set);
+std::vector<FeatureFunctions> functions_of_part();
 template <>
-BeginFunction pool_begin_of_part<0>(std::size_t set);
+std::vector<FeatureFunctions> functions_of_part<0>();
 template <>
-BeginFunction pool_begin_of_part<1>(std::size_t set);
+std::vector<FeatureFunctions> functions_of_part<1>();
 template <>
-BeginFunction pool_begin_of_part<2>(std::size_t set);
-
-/// The function of each set from `first` on, `count` of them, by Pick<features>::begin.
-template <template <Features> class Pick, std::size_t first, std::size_t count>
-BeginFunction begin_of_set(std::size_t set) {
-    constexpr auto kFunctions = []<std::size_t... i>(std::index_sequence<i...>) {
-        return std::array<BeginFunction, count>{&Pick<kFeatureSets[first + i].features>::begin...};
-    }
-    (std::make_index_sequence<count>());
-    return kFunctions[set - first];
-}
+std::vector<FeatureFunctions> functions_of_part<2>();
 
 }  // namespace raypool::studies

@@ -44,11 +44,6 @@ wavefront::PoolSettings rung_settings(const std::string& rung, int threads) {
     RAYPOOL_CHECK(found != rungs.end(), "the ladder has the rung");
     return found->pool;
 }
-std::vector<NamedEngine> ladder_engines(int threads) {
-    std::vector<NamedEngine> engines;
-    for (const wavefront::Rung& rung : wavefront::ladder(threads)) engines.push_back(pool_engine(rung.name, rung.pool));
-    return engines;
-}
 
 RenderSettings with_way(RenderSettings settings, const LoopWay& way) {
     settings.grain = parse_grain(way.grain);
@@ -129,11 +124,16 @@ Cells loop_cells(bool loops_over_image, const RenderSettings& settings) {
 }
 
 Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
-                 const RenderSettings& settings, int repeats, const Cells& extra) {
-    const auto run = [engine, scene, settings, extra]() -> std::vector<Cells> {
-        return {render_cells(engine, *scene, settings, measure(*engine.engine, *scene, settings)) + extra};
+                 const RenderSettings& settings, int repeats, const MoreCells& more) {
+    const auto run = [engine, scene, settings, more]() -> std::vector<Cells> {
+        const Measured measured = measure(*engine.engine, *scene, settings);
+        return {render_cells(engine, *scene, settings, measured) + more(measured.report)};
     };
     return {std::move(id), image_of(*scene, settings), repeats, run};
+}
+Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
+                 const RenderSettings& settings, int repeats, const Cells& more) {
+    return render_case(std::move(id), engine, scene, settings, repeats, [more](const RenderReport&) { return more; });
 }
 
 std::vector<int> thread_counts(int most) {

@@ -75,39 +75,22 @@ std::vector<GroupedWay> all_ways() {
     return ways;
 }
 
-/// The costs of the study's paths, their model, and OpenMP's costs, found out when they are first asked for.
-class Work {
-  public:
-    Work(std::shared_ptr<const StudyScene> scene, const RenderSettings& settings, int repeats)
-        : scene_(std::move(scene)), settings_(settings), repeats_(repeats) {}
-    const PathCosts& costs() {
-        if (costs_.first.empty()) costs_ = record_costs(*scene_, settings_);
-        return costs_;
-    }
-    const CostFit& fit() {
-        if (fit_.seconds == 0) fit_ = fit_costs(*scene_, settings_, costs(), repeats_);
-        return fit_;
-    }
-    /// Of the default pool: the model in proportion.
-    const CostModel& pool_model() {
-        if (pool_model_.segment_s == 0 && pool_model_.test_s == 1)
-            pool_model_ =
-                scaled_to(*fused_pool().engine, *scene_, settings_, costs(), fit().model, std::min(repeats_, 3));
-        return pool_model_;
-    }
-    const OpenMpCosts& openmp() {
-        if (openmp_.threads.empty()) openmp_ = measure_openmp_costs(core_count());
-        return openmp_;
-    }
+/// The costs of the study's paths, their model, and OpenMP's costs.
+struct Work {
+    Work(const std::shared_ptr<const StudyScene>& scene, const RenderSettings& settings, int repeats)
+        : costs([=] { return record_costs(*scene, settings); }),
+          fit([=, this] { return fit_costs(*scene, settings, costs(), repeats); }),
+          pool_model([=, this] {
+              return scaled_to(*fused_pool().engine, *scene, settings, costs(), fit().model, std::min(repeats, 3));
+          }),
+          openmp([] { return measure_openmp_costs(core_count()); }) {}
+    Work(const Work&) = delete;  // its members ask each other
+    Work& operator=(const Work&) = delete;
 
-  private:
-    std::shared_ptr<const StudyScene> scene_;
-    RenderSettings settings_;
-    int repeats_;
-    PathCosts costs_;
-    CostFit fit_;
-    CostModel pool_model_;
-    OpenMpCosts openmp_;
+    Lazy<PathCosts> costs;
+    Lazy<CostFit> fit;
+    Lazy<CostModel> pool_model;  ///< of the default pool: the model in proportion
+    Lazy<OpenMpCosts> openmp;
 };
 
 std::vector<Cells> replay_all(Work& work, const StudyScene& scene, const RenderSettings& settings, int most,

@@ -39,23 +39,16 @@ std::optional<std::vector<std::string>> next_line(std::string_view& text) {
     bool is_quoted = false;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
-        if (is_quoted) {
-            if (c != '"') {
-                cells.back() += c;
-            } else if (i + 1 < text.size() && text[i + 1] == '"') {
-                cells.back() += text[++i];
-            } else {
-                is_quoted = false;
-            }
-        } else if (c == '"') {
-            is_quoted = true;
+        if (c == '"') {
+            if (!is_quoted && i > 0 && text[i - 1] == '"') cells.back() += c;  // two within quotes are one
+            is_quoted = !is_quoted;
+        } else if (is_quoted || (c != ',' && c != '\n')) {
+            cells.back() += c;
         } else if (c == ',') {
             cells.emplace_back();
-        } else if (c == '\n') {
+        } else {
             text.remove_prefix(i + 1);
             return cells;
-        } else {
-            cells.back() += c;
         }
     }
     return std::nullopt;
