@@ -165,14 +165,13 @@ constexpr auto kPoleMisses = []<class Scalar>(const auto& is_met, double transla
 /// The clock: a ray against a box with edges of 2, one at a time.
 template <class Test>
 auto timed(Test is_met) {
-    return [is_met](std::int64_t calls) {
-        RandomInputs random(34);
-        std::vector<Ray<float>> rays(256);
-        for (Ray<float>& ray : rays) ray = {random.point<float>(3), random.direction<float>(), 0};
-        const Vec3<float> low = vec3<float>(-1, -1, -1);
-        const Vec3<float> high = vec3<float>(1, 1, 1);
-        return sum_over(rays, calls, [&](const auto& ray) { return is_met(low, high, ray.origin, ray.direction); });
+    const auto draw = [](RandomInputs& random) {
+        const Vec3<float> origin = random.point<float>(3);
+        return Ray<float>{origin, random.direction<float>(), 0};
     };
+    return sum_over(RandomInputs(34), draw, [=](const Ray<float>& ray) {
+        return is_met(vec3<float>(-1, -1, -1), vec3<float>(1, 1, 1), ray.origin, ray.direction);
+    });
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ const Case& find_case(const std::string& id);
 /// The methods of cases, by the ids of the cases.
 using CaseMethods = std::vector<std::pair<std::string, std::vector<Method>>>;
 
-// The families, each in the file of its name.
+// The families, each in the file of its name; images in failures.cpp.
 CaseMethods sphere_cases();
 CaseMethods leaving_cases();
 CaseMethods coincidence_cases();

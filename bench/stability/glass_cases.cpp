@@ -123,15 +123,11 @@ constexpr auto kOurGhost = []<class Scalar>(const Arrival<Scalar>& at) {
 
 template <class Split>
 auto timed(Split split) {
-    return [split](std::int64_t calls) {
-        RandomInputs random(64);
-        std::vector<Arrival<float>> arrivals;
-        for (int i = 0; i < 256; ++i) arrivals.emplace_back(random, random.uniform(0, 0.999));
-        return sum_over(arrivals, calls, [&](const Arrival<float>& at) {
-            const FresnelSplit<float> light = split(at.direction, at.normal, 1 / 1.5F);
-            return light.reflectance + light.refracted[0];
-        });
-    };
+    const auto draw = [](RandomInputs& random) { return Arrival<float>(random, random.uniform(0, 0.999)); };
+    return sum_over(RandomInputs(64), draw, [=](const Arrival<float>& at) {
+        const FresnelSplit<float> light = split(at.direction, at.normal, 1 / 1.5F);
+        return light.reflectance + light.refracted[0];
+    });
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ using SharedReference = std::shared_ptr<accuracy::Reference>;
 
 /// No pixel gets more.
 constexpr std::int64_t kMostSamples = 1 << 16;
+constexpr int kThreads = 1;  ///< of what is timed
 
 /// A scene, and the errors that are asked for: those of about 32 and of about 128 samples a pixel.
 struct Target {
@@ -46,16 +47,12 @@ struct AdaptivePlan {
     std::int64_t half_spp;
     int seeds;
     std::uint64_t first_seed;
-    int threads;
     int load_threads;
 };
 
 AdaptivePlan adaptive_plan(const StudyOptions& options) {
-    return {choose(options, options.width, {96, 240}),
-            32 * choose(options, options.spp, {64, 256}),
-            static_cast<int>(choose(options, options.repeats, {5, 12})),
-            options.seed,
-            1,
+    return {choose(options, options.width, {96, 240}), 32 * choose(options, options.spp, {64, 256}),
+            static_cast<int>(choose(options, options.repeats, {5, 12})), options.seed,
             options.threads != 0 ? options.threads : 8};
 }
 
@@ -153,11 +150,11 @@ Case pair_case(const SharedScene& scene, const SharedReference& reference, const
     const auto run = [=]() -> std::vector<Cells> {
         const wavefront::WavefrontEngine pool({});
         const double begin = omp_get_wtime();
-        const Made adaptive = make_adaptive(pool, scene->in_float, settings_of(seed, plan.threads), error);
+        const Made adaptive = make_adaptive(pool, scene->in_float, settings_of(seed, kThreads), error);
         const double adaptive_s = omp_get_wtime() - begin;
 
         const auto spp = std::max<std::int64_t>(1, std::llround(adaptive.adaptive.mean_samples()));
-        const accuracy::TimedImage same = render_image({}, *scene, {0, spp, seed, plan.threads});
+        const accuracy::TimedImage same = render_image({}, *scene, {0, spp, seed, kThreads});
         const accuracy::Halves& halves = reference->halves();
         const double truth = mean(mean_of(halves));
         const auto row = [&](const char* method, double samples, double seconds, const accuracy::TimedImage& image) {
@@ -166,7 +163,7 @@ Case pair_case(const SharedScene& scene, const SharedReference& reference, const
                          {"target", error},
                          {"method", method},
                          {"width", plan.width},
-                         {"threads", plan.threads},
+                         {"threads", kThreads},
                          {"seed", seed},
                          {"samples", samples},
                          {"seconds", seconds},

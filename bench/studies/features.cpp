@@ -74,8 +74,8 @@ std::vector<Case> features_cases(const StudyOptions& options) {
             extra.emplace_back("record_bytes", ray_record_bytes(features, sizeof(float)));
             extra.emplace_back("record_bytes_double", ray_record_bytes(features, sizeof(double)));
         }
-        cases.push_back(render_case(fmt::format("{}, {}, compiled for {}", engine.name, scene_name, compiled), engine,
-                                    study_scene, plan.settings, plan.repeats, extra));
+        cases.push_back(render_case(fmt::format("{}, {}, compiled for {}", engine.name, scene_name, compiled),
+                                    {engine, study_scene, plan.settings}, plan.repeats, extra));
     };
     for (const auto& [engine, render] :
          {std::pair{iterative_engine(), &iterative_begin}, std::pair{fused_pool(), &pool_begin}}) {

@@ -75,21 +75,13 @@ std::vector<std::string> render_arguments(const std::string& scene, std::int64_t
     return arguments;
 }
 
-Case time_case(const Variant& variant, const std::shared_ptr<const StudyScene>& scene, const RenderSettings& settings,
-               int repeats) {
-    return render_case(fmt::format("time: {}, {}, width {}, {} spp, {} threads", variant.name, variant.layout,
-                                   scene->compiled.width, settings.end_sample, settings.threads),
-                       pool_engine(variant.name, variant.pool), scene, settings, repeats,
-                       layout_cells(*scene, settings, variant.layout, "clock"));
-}
-
 /// Rows of counts have no time: counting disturbs it.
-Cells count_cells(const Variant& variant, const StudyScene& scene, const RenderSettings& settings, const char* source,
-                  const std::string& hash, const char* part, const CacheCounts& counts) {
-    return layout_cells(scene, settings, variant.layout, source) +
-           Cells{{"engine", variant.name},
-                 {"threads", settings.threads},
-                 {"width", scene.compiled.width},
+Cells count_cells(const Render& render, const Variant& variant, const char* source, const std::string& hash,
+                  const char* part, const CacheCounts& counts) {
+    return layout_cells(*render.scene, render.settings, variant.layout, source) +
+           Cells{{"engine", render.engine.name},
+                 {"threads", render.settings.threads},
+                 {"width", render.scene->compiled.width},
                  {"hash", hash},
                  {"part", part},
                  {"data_reads", or_null(counts.reads)},
@@ -98,34 +90,20 @@ Cells count_cells(const Variant& variant, const StudyScene& scene, const RenderS
                  {"d1_write_misses", or_null(counts.d1_write_misses)},
                  {"ll_read_misses", or_null(counts.ll_read_misses)},
                  {"ll_write_misses", or_null(counts.ll_write_misses)}} +
-           loop_cells(loops_over_image(variant.pool), settings);
+           loop_cells(render.engine.engine->loops_over_image(), render.settings);
 }
 
-Case hardware_case(const Variant& variant, const std::shared_ptr<const StudyScene>& scene,
-                   const RenderSettings& settings, int repeats) {
-    const auto run = [variant, scene, settings]() -> std::vector<Cells> {
-        std::string hash;
-        const auto counts =
-            count_by_hardware([&] { hash = measure(wavefront::WavefrontEngine(variant.pool), *scene, settings).hash; });
-        return {count_cells(variant, *scene, settings, "hardware counters", hash, "render",
-                            counts.value_or(CacheCounts{}))};
-    };
-    return {fmt::format("counters: {}, {}, width {}, {} spp", variant.name, variant.layout, scene->compiled.width,
-                        settings.end_sample),
-            image_of(*scene, settings), repeats, run};
+std::vector<Cells> hardware_rows(const Render& render, const Variant& variant) {
+    std::string hash;
+    const auto counts = count_by_hardware([&] { hash = measure(render).hash; });
+    return {count_cells(render, variant, "hardware counters", hash, "render", counts.value_or(CacheCounts{}))};
 }
 
-Case cachegrind_case(const Variant& variant, const std::shared_ptr<const StudyScene>& scene,
-                     const RenderSettings& settings, const std::string& file) {
-    const auto run = [variant, scene, settings, file]() -> std::vector<Cells> {
-        const Cachegrind found = run_cachegrind(render_arguments(file, scene->compiled.width, settings, variant.pool));
-        const auto row = [&](const char* part, const CacheCounts& counts) {
-            return count_cells(variant, *scene, settings, "cachegrind", found.hash, part, counts);
-        };
-        return {row("render", found.rendering), row("accumulate", found.accumulating)};
-    };
-    return {fmt::format("cachegrind: {}, {}, width {}", variant.name, variant.layout, scene->compiled.width),
-            image_of(*scene, settings), 1, run};
+std::vector<Cells> cachegrind_rows(const Render& render, const Variant& variant, const std::string& file) {
+    const Cachegrind found =
+        run_cachegrind(render_arguments(file, render.scene->compiled.width, render.settings, variant.pool));
+    return {count_cells(render, variant, "cachegrind", found.hash, "render", found.rendering),
+            count_cells(render, variant, "cachegrind", found.hash, "accumulate", found.accumulating)};
 }
 
 bool has_hardware_counters() {
@@ -141,9 +119,12 @@ std::vector<Case> framebuffer_cases(const StudyOptions& options) {
     RenderSettings settings = plan.settings;
     settings.schedule = parse_schedule("dynamic");
     std::vector<Case> cases;
+    // make(what it renders in words, variant, render) is a case.
     const auto each_variant = [&](const auto& scene, std::int64_t samples, const auto& make) {
         settings.end_sample = samples;
-        for (const Variant& variant : variants()) cases.push_back(make(variant, scene));
+        for (const Variant& variant : variants())
+            cases.push_back(make(fmt::format("{}, {}, width {}", variant.name, variant.layout, scene->compiled.width),
+                                 variant, Render{pool_engine(variant.name, variant.pool), scene, settings}));
     };
     // One image smaller than the second-level cache and one larger, with as many paths.
     const auto large = study_scene(options.scene, width);
@@ -155,15 +136,25 @@ std::vector<Case> framebuffer_cases(const StudyOptions& options) {
 
     for (const int threads : one_and_all(plan.most_threads)) {
         settings.threads = threads;
-        each_size([&](const auto&... what) { return time_case(what..., settings, plan.repeats); });
+        each_size([&](const std::string& what, const Variant& variant, const Render& render) {
+            return render_case(fmt::format("time: {}, {} spp, {} threads", what, settings.end_sample, threads), render,
+                               plan.repeats, layout_cells(*render.scene, settings, variant.layout, "clock"));
+        });
     }
 
     // Misses, of one thread.
     settings.threads = 1;
     if (has_hardware_counters()) {
-        each_size([&](const auto&... what) { return hardware_case(what..., settings, plan.repeats); });
+        each_size([&](const std::string& what, const Variant& variant, const Render& render) {
+            return case_of(fmt::format("counters: {}, {} spp", what, settings.end_sample), render, plan.repeats,
+                           [variant](const Render& of) { return hardware_rows(of, variant); });
+        });
     } else if (cachegrind_command().why.empty()) {
-        const auto make = [&](const auto&... what) { return cachegrind_case(what..., settings, options.scene); };
+        const auto make = [&](const std::string& what, const Variant& variant, const Render& render) {
+            return case_of("cachegrind: " + what, render, 1, [variant, file = options.scene](const Render& of) {
+                return cachegrind_rows(of, variant, file);
+            });
+        };
         const std::int64_t most_width = std::min(width, kSimulatedWidth);
         if (!options.is_quick)
             each_variant(study_scene(options.scene, std::max<std::int64_t>(most_width * 2 / 5, 1)), 2, make);

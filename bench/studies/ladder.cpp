@@ -61,20 +61,21 @@ std::vector<Case> ladder_cases(const StudyOptions& options) {
     settings.schedule = parse_schedule("dynamic");
     std::vector<Case> cases;
     const auto add_rate = [&](const NamedEngine& engine) {
-        cases.push_back(render_case(fmt::format("{}, {} threads", engine.name, settings.threads), engine, scene,
-                                    settings, plan.repeats, [](const RenderReport& report) {
-                                        return Cells{{"segments", report.segments()}, {"clocks", "off"}};
-                                    }));
+        const auto more = [](const RenderReport& report) {
+            return Cells{{"segments", report.segments()}, {"clocks", "off"}};
+        };
+        cases.push_back(render_case(fmt::format("{}, {} threads", engine.name, settings.threads),
+                                    {engine, scene, settings}, plan.repeats, more));
     };
     const auto add_split = [&](const wavefront::Rung& rung) {
         RenderSettings logged = settings;
         logged.log_rounds = true;
+        const auto more = [scene, pool = rung.pool](const RenderReport& report) {
+            return Cells{{"segments", report.segments()}, {"clocks", "on"}} +
+                   parts_of_pool(report, scene->compiled.features, pool);
+        };
         cases.push_back(render_case(fmt::format("{}, {} threads, clocks on", rung.name, settings.threads),
-                                    pool_engine(rung.name, rung.pool), scene, logged, plan.repeats,
-                                    [scene, pool = rung.pool](const RenderReport& report) {
-                                        return Cells{{"segments", report.segments()}, {"clocks", "on"}} +
-                                               parts_of_pool(report, scene->compiled.features, pool);
-                                    }));
+                                    {pool_engine(rung.name, rung.pool), scene, logged}, plan.repeats, more));
     };
     for (const int threads : one_and_all(plan.most_threads)) {
         settings.threads = threads;

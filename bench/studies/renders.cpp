@@ -102,18 +102,17 @@ std::vector<Column> render_columns(const std::vector<Column>& more) {
     return columns;
 }
 
-Cells render_cells(const NamedEngine& engine, const StudyScene& scene, const RenderSettings& settings,
-                   const Measured& measured) {
+Cells render_cells(const Render& render, const Measured& measured) {
     const RenderReport& report = measured.report;
-    Cells cells{{"engine", engine.name},
-                {"threads", settings.threads},
-                {"width", scene.compiled.width},
+    Cells cells{{"engine", render.engine.name},
+                {"threads", render.settings.threads},
+                {"width", render.scene->compiled.width},
                 {"seconds", report.seconds},
                 {"mpaths_per_s", static_cast<double>(report.paths()) / report.seconds * 1e-6},
                 {"load_max_over_mean", max_over_mean(by_thread(report, &ThreadReport::segments))},
                 {"waiting", waiting(report)},
                 {"hash", measured.hash}};
-    return cells + loop_cells(engine.engine->loops_over_image(), settings);
+    return cells + loop_cells(render.engine.engine->loops_over_image(), render.settings);
 }
 
 Cells loop_cells(bool loops_over_image, const RenderSettings& settings) {
@@ -123,17 +122,18 @@ Cells loop_cells(bool loops_over_image, const RenderSettings& settings) {
     return cells;
 }
 
-Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
-                 const RenderSettings& settings, int repeats, const MoreCells& more) {
-    const auto run = [engine, scene, settings, more]() -> std::vector<Cells> {
-        const Measured measured = measure(*engine.engine, *scene, settings);
-        return {render_cells(engine, *scene, settings, measured) + more(measured.report)};
-    };
-    return {std::move(id), image_of(*scene, settings), repeats, run};
+Case case_of(std::string id, const Render& render, int repeats,
+             const std::function<std::vector<Cells>(const Render& render)>& rows) {
+    return {std::move(id), image_of(*render.scene, render.settings), repeats, [=] { return rows(render); }};
 }
-Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
-                 const RenderSettings& settings, int repeats, const Cells& more) {
-    return render_case(std::move(id), engine, scene, settings, repeats, [more](const RenderReport&) { return more; });
+Case render_case(std::string id, const Render& render, int repeats, const MoreCells& more) {
+    return case_of(std::move(id), render, repeats, [more](const Render& of) -> std::vector<Cells> {
+        const Measured measured = measure(of);
+        return {render_cells(of, measured) + more(measured.report)};
+    });
+}
+Case render_case(std::string id, const Render& render, int repeats, const Cells& more) {
+    return render_case(std::move(id), render, repeats, [more](const RenderReport&) { return more; });
 }
 
 std::vector<int> thread_counts(int most) {

@@ -79,25 +79,35 @@ void check_threads(int given, int asked);
 /// One render. What fixes its threads is checked.
 Measured measure(const Engine& engine, const StudyScene& scene, const RenderSettings& settings);
 
+/// One render: by whom, of what, and how.
+struct Render {
+    NamedEngine engine;
+    std::shared_ptr<const StudyScene> scene;
+    RenderSettings settings;
+};
+inline Measured measure(const Render& render) {
+    return measure(*render.engine.engine, *render.scene, render.settings);
+}
+
 /// What fixes the image: cases with the same text must have the same hash.
 std::string image_of(const StudyScene& scene, const RenderSettings& settings);
 
 /// The columns of a render, and `more` behind them: engine, threads, schedule and grain (of engines that loop over the
 /// image), width, seconds, mpaths_per_s, load_max_over_mean, waiting, hash.
 std::vector<Column> render_columns(const std::vector<Column>& more);
-Cells render_cells(const NamedEngine& engine, const StudyScene& scene, const RenderSettings& settings,
-                   const Measured& measured);
+Cells render_cells(const Render& render, const Measured& measured);
 
 /// The schedule and grain of an engine that loops over the image; nothing of others.
 Cells loop_cells(bool loops_over_image, const RenderSettings& settings);
 
+/// A case of one render, whose rows are made by rows(render).
+Case case_of(std::string id, const Render& render, int repeats,
+             const std::function<std::vector<Cells>(const Render& render)>& rows);
 /// Cells of a row that stand behind those of every render: the same for all repeats, or taken from what a render did.
 using MoreCells = std::function<Cells(const RenderReport& report)>;
 /// A case of one row: render_cells() and `more`.
-Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
-                 const RenderSettings& settings, int repeats, const MoreCells& more);
-Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
-                 const RenderSettings& settings, int repeats, const Cells& more);
+Case render_case(std::string id, const Render& render, int repeats, const MoreCells& more);
+Case render_case(std::string id, const Render& render, int repeats, const Cells& more);
 
 /// 1, 2, 4, ... up to `most`, and `most` itself.
 std::vector<int> thread_counts(int most);

@@ -76,11 +76,12 @@ class Dispenser {
     std::int64_t batch_size_ = 0;
 };
 
-/// Threads by the time at which they want their next chunk. Of threads that come at once, `first` is the first.
+/// Threads by the time at which they want their next chunk. Of threads that come at once, the lower rank is the first.
 class Clocks {
   public:
+    /// All at time 0, from thread `first` on.
     Clocks(int threads, int first) {
-        for (int i = 0; i < threads; ++i) queue_.emplace(0.0, i, (first + i) % threads);
+        for (int i = 0; i < threads; ++i) put(0, i, (first + i) % threads);
     }
     [[nodiscard]] bool is_empty() const { return queue_.empty(); }
     std::tuple<double, int, int> take() {

@@ -59,13 +59,13 @@ struct SizedScene {
     std::string kind;
     std::int64_t shapes;
     std::int64_t width;
-    Lazy<StudyScene> get;
+    Lazy<std::shared_ptr<const StudyScene>> get;
 
     SizedScene(const std::string& of_kind, std::int64_t of_shapes, std::int64_t wide)
         : kind(of_kind), shapes(of_shapes), width(wide), get([=] {
               Scene scene = GeneratedScene(of_kind, of_shapes).read();
               set_width(scene, wide);
-              return StudyScene{scene.name, compile<float>(scene)};
+              return std::make_shared<const StudyScene>(StudyScene{scene.name, compile<float>(scene)});
           }) {}
 };
 
@@ -81,23 +81,20 @@ struct SizedRender {
     std::shared_ptr<SizedScene> scene;
     RenderSettings settings;
 
-    [[nodiscard]] NamedEngine engine() const { return way.pool ? pool_engine("pool", *way.pool) : recursive_engine(); }
-    [[nodiscard]] Measured measure() const {
-        const StudyScene& made = scene->get();
-        return studies::measure(*engine().engine, made, settings);
+    [[nodiscard]] Render get() const {
+        return {way.pool ? pool_engine("pool", *way.pool) : recursive_engine(), scene->get(), settings};
     }
     /// What every row says; `way_text` begins with what was counted, if anything was.
     [[nodiscard]] Cells cells(const std::string& way_text, const Measured& measured) const {
         const RenderReport& report = measured.report;
-        return render_cells(engine(), scene->get(), settings, measured) +
-               Cells{{"kind", scene->kind},
-                     {"shapes", scene->shapes},
-                     {"depth", settings.depth},
-                     {"way", way_text},
-                     {"capacity", way.pool ? Value(report.pool_rays) : Value()},
-                     {"tree_bytes", wavefront::tree_bytes(scene->get().compiled)},
-                     {"segments", report.segments()},
-                     {"ns_per_segment", ns_per_segment(report, settings.threads)}};
+        return render_cells(get(), measured) + Cells{{"kind", scene->kind},
+                                                     {"shapes", scene->shapes},
+                                                     {"depth", settings.depth},
+                                                     {"way", way_text},
+                                                     {"capacity", way.pool ? Value(report.pool_rays) : Value()},
+                                                     {"tree_bytes", wavefront::tree_bytes(scene->get()->compiled)},
+                                                     {"segments", report.segments()},
+                                                     {"ns_per_segment", ns_per_segment(report, settings.threads)}};
     }
     /// The row's time is not used: counting takes some.
     [[nodiscard]] Cells miss_cells(const Measured& measured, const char* source, const Value& d1_read_misses,
@@ -119,13 +116,13 @@ Case sized_case(const std::string& what, const SizedRender& render, int repeats,
 }
 
 Rows timed_rows(const SizedRender& render) {
-    return {render.cells(render.way.name, render.measure())};
+    return {render.cells(render.way.name, measure(render.get()))};
 }
 
 Rows hardware_rows(const SizedRender& render) {
-    static_cast<void>(render.scene->get());  // made before anything is counted
+    const Render made = render.get();  // before anything is counted
     Measured measured;
-    const auto found = count_by_hardware([&] { measured = render.measure(); });
+    const auto found = count_by_hardware([&] { measured = measure(made); });
     const CacheCounts counts = found.value_or(CacheCounts{});
     return {render.miss_cells(measured, "hardware counters", or_null(counts.d1_read_misses),
                               or_null(counts.ll_read_misses))};
@@ -153,7 +150,7 @@ Rows cachegrind_rows(const SizedRender& render) {
     };
     const Cachegrind first = count(1);
     const Cachegrind all = count(render.settings.end_sample);
-    Measured measured = render.measure();
+    Measured measured = measure(render.get());
     if (measured.hash != all.hash) throw std::runtime_error("the image under cachegrind is another one");
     measured.report.threads.front().segments = all.segments - first.segments;
     return {render.miss_cells(measured, "cachegrind", more(all.all.d1_read_misses, first.all.d1_read_misses),
@@ -164,7 +161,7 @@ Rows cachegrind_rows(const SizedRender& render) {
 Rows list_rows(const SizedRender& render) {
     SizedRender counted = render;
     counted.settings.count_work = true;
-    const Measured measured = counted.measure();
+    const Measured measured = measure(counted.get());
     Rows rows;
     for (const ListLevel& level : measured.report.lists) {
         if (level.lists == 0) break;

@@ -1,7 +1,6 @@
 #include "bench/studies/table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -54,18 +53,13 @@ std::optional<std::vector<std::string>> next_line(std::string_view& text) {
     return std::nullopt;
 }
 
-template <class T>
-std::optional<Value> number(const std::string& text) {
-    T value;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return Value(value);
-}
-
+/// The value of a cell in such a column; nothing where it is none.
 std::optional<Value> parse(const std::string& text, ColumnType type) {
     if (text.empty()) return Value(nullptr);
     if (type == ColumnType::Text) return Value(text);
-    return type == ColumnType::Count ? number<std::uint64_t>(text) : number<double>(text);
+    const Value value = Value::parse(text, nullptr, false);
+    const bool is_right = type == ColumnType::Count ? value.is_number_unsigned() : value.is_number();
+    return is_right ? std::optional(value) : std::nullopt;
 }
 
 /// Adds a line that has been read to the table.
