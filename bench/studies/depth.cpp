@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -41,9 +42,8 @@ std::shared_ptr<const StudyScene> endless_corridor() {
 }
 
 /// The grid up to the depth asked for, and that depth itself; all of it where none is asked for.
-template <std::size_t n>
-std::vector<std::int64_t> depths_up_to(std::int64_t most, const std::int64_t (&grid)[n]) {
-    std::vector<std::int64_t> depths(std::begin(grid), std::end(grid));
+std::vector<std::int64_t> depths_up_to(std::int64_t most, std::span<const std::int64_t> grid) {
+    std::vector<std::int64_t> depths(grid.begin(), grid.end());
     if (most == 0) return depths;
     std::erase_if(depths, [&](std::int64_t depth) { return depth >= most; });
     depths.push_back(most);
