@@ -185,9 +185,8 @@ const Batches& contributions_in(Order order) {
                              [](const Contribution& a, const Contribution& b) { return a.pixel < b.pixel; });
         return batches(contributions);
     };
-    static const Batches in_pixel_order = make(true);
-    static const Batches in_pool_order = make(false);
-    return order == Order::Pixels ? in_pixel_order : in_pool_order;
+    static const Batches in_order[] = {make(true), make(false)};
+    return in_order[static_cast<std::size_t>(order)];
 }
 
 struct Layout {

@@ -17,6 +17,20 @@
 
 namespace raypool::studies {
 
+namespace {
+
+/// What fixes the image: cases with the same text must have the same hash.
+std::string image_of(const Render& render) {
+    const StudyScene& scene = *render.scene;
+    const RenderSettings& settings = render.settings;
+    return fmt::format("{} {} x {}, samples {} to {}, depth {}, split {}, seed {}{}{}", scene.name,
+                       scene.compiled.width, scene.compiled.height, settings.first_sample, settings.end_sample,
+                       settings.depth, settings.split_depth, settings.seed,
+                       settings.sampler == Sampler::Sobol ? ", sobol" : "", settings.roulette ? ", roulette" : "");
+}
+
+}  // namespace
+
 std::shared_ptr<const StudyScene> study_scene(const std::string& name, std::int64_t width) {
     Scene scene = load_scene(name);
     set_width(scene, width);
@@ -79,13 +93,6 @@ Measured measure(const Engine& engine, const StudyScene& scene, const RenderSett
     return {std::move(report), framebuffer.hash()};
 }
 
-std::string image_of(const StudyScene& scene, const RenderSettings& settings) {
-    return fmt::format("{} {} x {}, samples {} to {}, depth {}, split {}, seed {}{}{}", scene.name,
-                       scene.compiled.width, scene.compiled.height, settings.first_sample, settings.end_sample,
-                       settings.depth, settings.split_depth, settings.seed,
-                       settings.sampler == Sampler::Sobol ? ", sobol" : "", settings.roulette ? ", roulette" : "");
-}
-
 std::vector<Column> render_columns(const std::vector<Column>& more) {
     std::vector<Column> columns{
         {"engine", ColumnType::Text, "who rendered"},
@@ -124,7 +131,7 @@ Cells loop_cells(bool loops_over_image, const RenderSettings& settings) {
 
 Case case_of(std::string id, const Render& render, int repeats,
              const std::function<std::vector<Cells>(const Render& render)>& rows) {
-    return {std::move(id), image_of(*render.scene, render.settings), repeats, [=] { return rows(render); }};
+    return {std::move(id), image_of(render), repeats, [=] { return rows(render); }};
 }
 Case render_case(std::string id, const Render& render, int repeats, const MoreCells& more) {
     return case_of(std::move(id), render, repeats, [more](const Render& of) -> std::vector<Cells> {

@@ -89,9 +89,6 @@ inline Measured measure(const Render& render) {
     return measure(*render.engine.engine, *render.scene, render.settings);
 }
 
-/// What fixes the image: cases with the same text must have the same hash.
-std::string image_of(const StudyScene& scene, const RenderSettings& settings);
-
 /// The columns of a render, and `more` behind them: engine, threads, schedule and grain (of engines that loop over the
 /// image), width, seconds, mpaths_per_s, load_max_over_mean, waiting, hash.
 std::vector<Column> render_columns(const std::vector<Column>& more);

@@ -39,13 +39,13 @@ std::vector<ScalingWay> scaling_ways() {
     return ways;
 }
 
-std::vector<Cells> measured_scaling(const StudyScene& scene, const RenderSettings& settings, const ScalingWay& way) {
-    const double loop = compute_loop_seconds(settings.threads, 0.02);
-    const Measured measured = measure(*way.engine.engine, scene, settings);
+std::vector<Cells> measured_scaling(const Render& render, const char* way) {
+    const double loop = compute_loop_seconds(render.settings.threads, 0.02);
+    const Measured measured = measure(render);
     return {Cells{{"source", "measured"},
-                  {"way", way.loop.name},
-                  {"width", scene.compiled.width},
-                  {"threads", settings.threads},
+                  {"way", way},
+                  {"width", render.scene->compiled.width},
+                  {"threads", render.settings.threads},
                   {"seconds", measured.report.seconds},
                   {"loop_seconds", loop},
                   {"hash", measured.hash}}};
@@ -88,9 +88,10 @@ std::vector<Case> scaling_cases(const StudyOptions& options) {
             settings = with_way(plan.settings, way.loop);
             for (const int threads : thread_counts(std::min(core_count(), most))) {
                 settings.threads = threads;
-                cases.push_back({fmt::format("width {}, {} threads, {}", width, threads, way.loop.name),
-                                 image_of(*scene, settings), plan.repeats,
-                                 [=] { return measured_scaling(*scene, settings, way); }});
+                cases.push_back(
+                    case_of(fmt::format("width {}, {} threads, {}", width, threads, way.loop.name),
+                            {way.engine, scene, settings}, plan.repeats,
+                            [name = way.loop.name](const Render& render) { return measured_scaling(render, name); }));
             }
         }
         cases.push_back({fmt::format("width {}, replayed", width), "", 1,
