@@ -1,8 +1,8 @@
 // How radiance reaches the framebuffer.
 //   accumulate/...   every kind of accumulator, where threads have pixels of their own and where all add to the same
 //   few framebuffer/...  the contributions of a real render, to sums that lie side by side (r, g, b, r, g, b, ...) or
-//   in three
-//                    planes, in the order of the pixels and in the order in which a shared pool ends its paths
+//   in
+//                    three planes, in the order of the pixels and in the order in which a shared pool ends its paths
 
 #include <algorithm>
 #include <functional>
@@ -52,13 +52,23 @@ struct Contribution {
 };
 
 /// Contributions in the batches in which stages hand them on.
-std::vector<Contributions<float>> batches(const std::vector<Contribution>& contributions) {
+using Batches = std::vector<Contributions<float>>;
+Batches batches(const std::vector<Contribution>& contributions) {
     constexpr std::size_t kBatch = 1024;
-    std::vector<Contributions<float>> all((contributions.size() + kBatch - 1) / kBatch);
+    Batches all((contributions.size() + kBatch - 1) / kBatch);
     for (Contributions<float>& batch : all) batch.reserve(kBatch);
     for (std::size_t i = 0; i < contributions.size(); ++i)
         all[i / kBatch].put<float>(contributions[i].pixel, contributions[i].radiance, 1);
     return all;
+}
+std::int64_t count_of(const Batches& batches) {
+    std::size_t count = 0;
+    for (const Contributions<float>& batch : batches) count += batch.count();
+    return static_cast<std::int64_t>(count);
+}
+void add_all(AnyAccumulator& accumulator, const Batches& batches, const FixedPoint& fixed, int thread) {
+    SampleConverter converter(fixed);
+    for (const Contributions<float>& batch : batches) accumulator.add(batch, converter, thread);
 }
 
 // Accumulators, by themselves.
@@ -66,11 +76,11 @@ std::vector<Contributions<float>> batches(const std::vector<Contribution>& contr
 enum class Pixels { Own, Same };
 
 /// What each of `threads` threads adds: anywhere in its part of the image, or to the same eight pixels.
-std::vector<std::vector<Contributions<float>>> contributions_of_threads(Pixels pixels, int threads) {
+std::vector<Batches> contributions_of_threads(Pixels pixels, int threads) {
     constexpr std::size_t kContributions = 65536;
     const auto image = static_cast<std::uint32_t>(paper_scene().pixel_count());
     const std::uint32_t part = pixels == Pixels::Own ? image / static_cast<std::uint32_t>(threads) : 8;
-    std::vector<std::vector<Contributions<float>>> all;
+    std::vector<Batches> all;
     for (int thread = 0; thread < threads; ++thread) {
         std::mt19937 random(static_cast<unsigned>(thread));
         std::uniform_real_distribution<float> unit(0, 1);
@@ -84,15 +94,10 @@ std::vector<std::vector<Contributions<float>>> contributions_of_threads(Pixels p
     return all;
 }
 
-void add_all(AnyAccumulator& accumulator, const std::vector<std::vector<Contributions<float>>>& contributions,
-             const FixedPoint& fixed) {
-#pragma omp parallel num_threads(static_cast <int>(contributions.size()))
-    {
-        const int thread = omp_get_thread_num();
-        SampleConverter converter(fixed);
-        for (const Contributions<float>& batch : contributions[static_cast<std::size_t>(thread)])
-            accumulator.add(batch, converter, thread);
-    }
+void add_all(AnyAccumulator& accumulator, const std::vector<Batches>& contributions, const FixedPoint& fixed) {
+#pragma omp parallel for num_threads(static_cast <int>(contributions.size())) schedule(static, 1)
+    for (std::size_t thread = 0; thread < contributions.size(); ++thread)
+        add_all(accumulator, contributions[thread], fixed, static_cast<int>(thread));
 }
 
 /// The same sums as when one thread adds one contribution after the other; where they round, within one in a hundred.
@@ -121,12 +126,11 @@ void accumulate(benchmark::State& state, const Kind& kind, Pixels pixels) {
     // What merge() does once at the end of a render is not timed.
     accumulator = make_accumulator<float>(kind.accumulator, framebuffer, threads);
     for (auto _ : state) add_all(*accumulator, contributions, framebuffer.fixed_point());
-    std::size_t count = 0;
-    for (const auto& of_thread : contributions)
-        for (const Contributions<float>& batch : of_thread) count += batch.count();
+    std::int64_t count = 0;
+    for (const Batches& of_thread : contributions) count += count_of(of_thread);
     const double own_bytes = static_cast<double>(accumulator_bytes(kind.accumulator, framebuffer, threads)) /
                              static_cast<double>(paper_scene().pixel_count());
-    count_rays(state, static_cast<std::int64_t>(count), kContributionBytes + (own_bytes > 0 ? own_bytes : kSumBytes));
+    count_rays(state, count, kContributionBytes + (own_bytes > 0 ? own_bytes : kSumBytes));
 }
 
 // Layouts of the framebuffer.
@@ -147,17 +151,12 @@ class Recorder : public AnyAccumulator {
 /// The samples of an image in the order in which the paper's pool ends them.
 std::vector<Contribution> pool_order() {
     constexpr PoolSettings kPool{.scope = PoolScope::Shared, .refill = Refill::Drain, .camera = CameraStage::Staged};
-    RenderSettings settings;
-    settings.end_sample = 4;
     Recorder recorder;
-    const RenderContext<float> context{
-        paper_scene(), settings, kPool, random_seed(settings.seed, settings.sampler), StageRig<float>::roomy(),
-        &recorder};
     InPlacePool<kPaper, float> pool(PoolSettings::kSharedCapacity, static_cast<std::size_t>(kPool.batch), 0);
-    Stages<kPaper, Lanes, NoTestCount, Splitting::Off> stages(context, pool.batch(), 0);
-    const CameraPaths image(RenderUnit{0, settings.end_sample, nullptr}, paper_scene().width, paper_scene().height);
+    StageRig<Lanes> rig(kPool, pool.batch(), &recorder);
+    auto& stages = rig.stages();
+    const CameraPaths image(RenderUnit{0, 4, nullptr}, paper_scene().width, paper_scene().height);
     PathCounter camera(image.left());
-    const FlushDenormals flush;
     do {  // the rounds of SharedPoolSession, in one thread
         const bool takes_camera = pool.is_empty();
         for (std::int64_t b = 0; b < pool.batch_count(); ++b) {
@@ -178,7 +177,7 @@ std::vector<Contribution> pool_order() {
 
 enum class Order { Pixels, Pool };
 
-const std::vector<Contributions<float>>& contributions_in(Order order) {
+const Batches& contributions_in(Order order) {
     const auto make = [](bool is_sorted) {
         std::vector<Contribution> contributions = pool_order();
         if (is_sorted)
@@ -186,9 +185,8 @@ const std::vector<Contributions<float>>& contributions_in(Order order) {
                              [](const Contribution& a, const Contribution& b) { return a.pixel < b.pixel; });
         return batches(contributions);
     };
-    static const std::vector<Contributions<float>> in_pixel_order = make(true);
-    static const std::vector<Contributions<float>> in_pool_order = make(false);
-    return order == Order::Pixels ? in_pixel_order : in_pool_order;
+    static const Batches in_order[] = {make(true), make(false)};
+    return in_order[static_cast<std::size_t>(order)];
 }
 
 struct Layout {
@@ -197,28 +195,23 @@ struct Layout {
 };
 constexpr Layout kLayouts[] = {{"interleaved", Accumulator::OwnedInt64}, {"planar", Accumulator::OwnedPlanarInt64}};
 
-std::string hash_of(const Layout& layout, const std::vector<Contributions<float>>& contributions) {
+std::string hash_of(const Layout& layout, const Batches& contributions) {
     Framebuffer framebuffer = empty_framebuffer();
     const auto accumulator = make_accumulator<float>(layout.accumulator, framebuffer, 1);
-    SampleConverter converter(framebuffer.fixed_point());
-    for (const Contributions<float>& batch : contributions) accumulator->add(batch, converter, 0);
+    add_all(*accumulator, contributions, framebuffer.fixed_point(), 0);
     merge_all(*accumulator);
     return framebuffer.hash();
 }
 
 void fill_framebuffer(benchmark::State& state, const Layout& layout, Order order) {
-    const std::vector<Contributions<float>>& contributions = contributions_in(order);
+    const Batches& contributions = contributions_in(order);
     if (!agree(state, hash_of(layout, contributions) == hash_of(kLayouts[0], contributions_in(Order::Pixels)),
                "the sums differ from the interleaved ones in pixel order"))
         return;
     Framebuffer framebuffer = empty_framebuffer();
     const auto accumulator = make_accumulator<float>(layout.accumulator, framebuffer, 1);
-    SampleConverter converter(framebuffer.fixed_point());
-    for (auto _ : state)
-        for (const Contributions<float>& batch : contributions) accumulator->add(batch, converter, 0);
-    std::size_t count = 0;
-    for (const Contributions<float>& batch : contributions) count += batch.count();
-    count_rays(state, static_cast<std::int64_t>(count), kContributionBytes + kSumBytes);
+    for (auto _ : state) add_all(*accumulator, contributions, framebuffer.fixed_point(), 0);
+    count_rays(state, count_of(contributions), kContributionBytes + kSumBytes);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 /// StageRig is what it takes to drive the stages of wavefront/stages.h by hand.
 #pragma once
 
-#include <array>
 #include <cstring>
 #include <map>
 #include <string>
@@ -15,19 +14,18 @@
 
 namespace raypool {
 
-using Records = wavefront::RayColumns<kPaper, float>;
-
 inline constexpr std::int64_t kFrozenSpp = 16;
 inline constexpr int kFrozenBatches[] = {4096, 65536};  ///< as a thread works on, and as a whole shared pool
 
-/// The stages of one thread with all that they need. Denormals are flushed while it lives, as when an engine renders;
-/// rigs of a thread must go in the reverse order of their coming.
+/// The stages of one thread with all that they need; radiance goes to `recorder`, where there is one. Denormals are
+/// flushed while it lives, as when an engine renders; rigs of a thread must go in the reverse order of their coming.
 template <class Real>
 class StageRig {
   public:
     using Stages = wavefront::Stages<kPaper, Real, NoTestCount, Splitting::Off>;
 
-    StageRig(const wavefront::PoolSettings& pool, std::size_t most_records)
+    StageRig(const wavefront::PoolSettings& pool, std::size_t most_records,
+             wavefront::AccumulatorBase<float>* recorder = nullptr)
         : pool_(pool),
           framebuffer_(paper_scene().width, paper_scene().height, roomy()),
           accumulator_(wavefront::make_accumulator<float>(pool.accumulator, framebuffer_, 1)),
@@ -36,7 +34,7 @@ class StageRig {
                    pool_,
                    random_seed(settings_.seed, settings_.sampler),
                    framebuffer_.fixed_point(),
-                   accumulator_.get()},
+                   recorder != nullptr ? recorder : accumulator_.get()},
           stages_(context_, most_records, 0) {}
     StageRig(const StageRig&) = delete;
     StageRig& operator=(const StageRig&) = delete;
@@ -133,19 +131,12 @@ bool same_bits(const T* a, const T* b, std::size_t count) {
 
 /// Whether the first `count` records have the same bits.
 inline bool same_records(const Records& a, const Records& b, std::size_t count) {
-    using Bytes = std::array<std::byte, ray_record_bytes(kPaper, sizeof(float))>;
-    const auto bytes_of = [](const Records& records, std::size_t i) {
-        Bytes bytes;
-        std::byte* to = bytes.data();
-        const wavefront::RayRecord<float> record = records.load<float>(i);
-        wavefront::for_each_field<kPaper>(record, [&](const auto& field) {
-            std::memcpy(to, &field, sizeof(field));
-            to += sizeof(field);
-        });
-        return bytes;
-    };
-    for (std::size_t i = 0; i < count; ++i)
-        if (bytes_of(a, i) != bytes_of(b, i)) return false;
+    using Record = wavefront::RayRecord<float>;
+    static_assert(sizeof(Record) == sizeof(Ray<float>) + sizeof(Vec3<float>) + 4 * sizeof(float), "no gaps between");
+    for (std::size_t i = 0; i < count; ++i) {
+        const Record records[] = {a.load<float>(i), b.load<float>(i)};
+        if (!same_bits(&records[0], &records[1], 1)) return false;
+    }
     return true;
 }
 

@@ -7,7 +7,6 @@
 
 #include "bench/bench_support.h"
 #include "bench/paper_scene.h"
-#include "wavefront/ray_record.h"
 
 namespace raypool {
 namespace {
@@ -65,8 +64,8 @@ std::vector<unsigned> survivor_masks(std::size_t count) {
     return masks;
 }
 
-template <class Records>
-std::size_t pass(Records& records, std::size_t count, const std::vector<unsigned>& masks) {
+template <class Layout>
+std::size_t pass(Layout& records, std::size_t count, const std::vector<unsigned>& masks) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count; i += kRays) {
         RayRecord<Real> record = records.template load<Real>(i);
@@ -81,7 +80,7 @@ std::size_t pass(Records& records, std::size_t count, const std::vector<unsigned
 bool layouts_agree() {
     constexpr std::size_t kCount = 1024;
     const std::vector<unsigned> masks = survivor_masks(kCount / kRays);
-    RayColumns<kPaper, float> columns(kCount);
+    Records columns(kCount);
     RayRows rows(kCount);
     for (std::uint32_t i = 0; i < kCount; ++i) {
         RayRecord<float> record{};
@@ -100,12 +99,12 @@ bool layouts_agree() {
     return true;
 }
 
-template <class Records>
+template <class Layout>
 void shade_memory(benchmark::State& state) {
     if (!agree(state, layouts_agree(), "the layouts hold different records")) return;
     const auto count = static_cast<std::size_t>(state.range(0));
     const std::vector<unsigned> masks = survivor_masks(count / kRays);
-    Records records(count);
+    Layout records(count);
     for (auto _ : state) benchmark::DoNotOptimize(pass(records, count, masks));
     count_rays(state, state.range(0), static_cast<double>(record_bytes<kPaper, float>()));
 }
@@ -116,9 +115,7 @@ void shade_memory(benchmark::State& state) {
 int main(int argc, char** argv) {
     using namespace raypool;
     if (!begin_benchmarks(argc, argv)) return 2;
-    add_row("record/layout/structure_of_arrays", shade_memory<wavefront::RayColumns<kPaper, float>>)
-        ->RangeMultiplier(8)
-        ->Range(1024, 65536);
+    add_row("record/layout/structure_of_arrays", shade_memory<Records>)->RangeMultiplier(8)->Range(1024, 65536);
     add_row("record/layout/array_of_structures", shade_memory<RayRows>)->RangeMultiplier(8)->Range(1024, 65536);
     benchmark::RunSpecifiedBenchmarks();
 }

@@ -6,11 +6,10 @@
 
 namespace raypool {
 
-void shade_omp_simd(const CompiledScene<float>& scene, const RandomSeed& seed, const ShadeColumns& columns,
-                    std::size_t count) {
+void shade_omp_simd(const CompiledScene<float>& scene, const RandomSeed& seed, const ShadeColumns& columns) {
     const ShadeColumns local = columns;  // so that no store can change the pointers
 #pragma omp simd
-    for (std::size_t i = 0; i < count; ++i) shade_at<float>(scene, seed, local, i);
+    for (std::size_t i = 0; i < local.count; ++i) shade_at<float>(scene, seed, local, i);
 }
 
 }  // namespace raypool

@@ -12,69 +12,51 @@ namespace raypool {
 
 /// Columns of rays that hit something, and of what becomes of them. All have room for whole registers.
 struct ShadeColumns {
-    const float* origin[3];
-    const float* direction[3];
-    const float* time;
-    const float* throughput[3];
-    const std::uint32_t* pixel;
-    const std::uint32_t* sample;
-    const std::uint32_t* step;
+    const Records* rays;
     const float* distance;
     const std::int32_t* primitive_id;
+    /// Columns one behind the other, `count` numbers each: origin, direction and throughput, and 1 where the path is
+    /// alive, else 0.
+    float* results;
+    std::size_t count;
 
-    float* next_origin[3];
-    float* next_direction[3];
-    float* next_throughput[3];
-    float* is_alive;  ///< 1 or 0
+    static constexpr std::size_t kResults = 10;
 };
-
-namespace detail {
-
-template <class V, class T>
-RAYPOOL_INLINE V load_at(const T* column, std::size_t i) {
-    if constexpr (Simd<V>) {
-        return V(column + i, stdx::element_aligned);
-    } else {
-        return column[i];
-    }
-}
-template <class Real>
-RAYPOOL_INLINE Vec3<Real> load_vec3_at(const float* const (&columns)[3], std::size_t i) {
-    return vec3<Real>(load_at<Real>(columns[0], i), load_at<Real>(columns[1], i), load_at<Real>(columns[2], i));
-}
-template <class V, class T>
-RAYPOOL_INLINE void store_at(T* column, std::size_t i, const V& value) {
-    if constexpr (Simd<V>) {
-        value.copy_to(column + i, stdx::element_aligned);
-    } else {
-        column[i] = value;
-    }
-}
-
-}  // namespace detail
 
 /// Shades rays i, i + 1, ... by lane.
 template <class Real>
 RAYPOOL_INLINE void shade_at(const CompiledScene<float>& scene, const RandomSeed& seed, const ShadeColumns& columns,
                              std::size_t i) {
-    using namespace detail;
-    using U = Uint32<Real>;
-    const Ray<Real> ray{load_vec3_at<Real>(columns.origin, i), load_vec3_at<Real>(columns.direction, i),
-                        load_at<Real>(columns.time, i)};
-    const PathKey<Real> key{load_at<U>(columns.pixel, i), load_at<U>(columns.sample, i)};
-    const Scattered<Real> out = scatter<kPaper, Real>(
-        scene, ray, load_at<Real>(columns.distance, i), load_at<Int<Real>>(columns.primitive_id, i),
-        load_vec3_at<Real>(columns.throughput, i), key, load_at<U>(columns.step, i), seed);
-    for (int k = 0; k < 3; ++k) {
-        store_at(columns.next_origin[k], i, out.start.origin[k]);
-        store_at(columns.next_direction[k], i, out.direction[k]);
-        store_at(columns.next_throughput[k], i, out.throughput[k]);
-    }
-    store_at(columns.is_alive, i, select(out.is_alive, Real(1), Real(0)));
+    const auto load = []<class V>(V& value, const auto* from) {
+        if constexpr (Simd<V>) {
+            value.copy_from(from, stdx::element_aligned);
+        } else {
+            value = *from;
+        }
+    };
+    Real distance;
+    Int<Real> primitive_id;
+    load(distance, columns.distance + i);
+    load(primitive_id, columns.primitive_id + i);
+    const wavefront::RayRecord<Real> record = columns.rays->load<Real>(i);
+    const Scattered<Real> out = scatter<kPaper, Real>(scene, record.ray, distance, primitive_id, record.throughput,
+                                                      record.key, record.step, seed);
+    float* to = columns.results + i;
+    const auto store = [&](const Real& value) {
+        if constexpr (Simd<Real>) {
+            value.copy_to(to, stdx::element_aligned);
+        } else {
+            *to = value;
+        }
+        to += columns.count;
+    };
+    for (int k = 0; k < 3; ++k) store(out.start.origin[k]);
+    for (int k = 0; k < 3; ++k) store(out.direction[k]);
+    for (int k = 0; k < 3; ++k) store(out.throughput[k]);
+    store(select(out.is_alive, Real(1), Real(0)));
 }
 
 /// Ray by ray, in a loop that asks the compiler for vectors.
-void shade_omp_simd(const CompiledScene<float>& scene, const RandomSeed& seed, const ShadeColumns& columns,
-                    std::size_t count);
+void shade_omp_simd(const CompiledScene<float>& scene, const RandomSeed& seed, const ShadeColumns& columns);
 
 }  // namespace raypool

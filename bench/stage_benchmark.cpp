@@ -17,21 +17,12 @@ constexpr std::size_t kHitBytes = sizeof(float) + sizeof(std::int32_t);
 constexpr std::size_t kContributionBytes = 3 * sizeof(float) + sizeof(std::uint32_t);
 constexpr PoolSettings kSorted{.sort = Sort::Material};
 
-/// A batch that stages may change, and its frozen original.
-class Batch {
-  public:
-    Batch(const RayKind& kind, std::size_t count) : frozen_(frozen_rays(kind, count)), count_(count), records_(count) {
-        restore();
-    }
-    void restore() { frozen_.copy_to(records_, 0, 0, count_); }
-    Records& records() { return records_; }
-    [[nodiscard]] std::size_t count() const { return count_; }
-
-  private:
-    const Records& frozen_;
-    std::size_t count_;
-    Records records_;
-};
+/// A copy of a frozen batch, which stages may change.
+Records thawed(const RayKind& kind, std::size_t count) {
+    Records records(count);
+    frozen_rays(kind, count).copy_to(records, 0, 0, count);
+    return records;
+}
 
 /// What a round left behind.
 struct Outcome {
@@ -47,9 +38,9 @@ struct Outcome {
 template <class Real>
 Outcome round(const RayKind& kind, std::size_t count, const PoolSettings& pool = {}) {
     StageRig<Real> rig(pool, count);
-    Batch batch(kind, count);
-    const std::size_t survivors = rig.stages().advance(batch.records(), 0, count);
-    return {std::move(batch.records()), survivors, rig.hash()};
+    Records records = thawed(kind, count);
+    const std::size_t survivors = rig.stages().advance(records, 0, count);
+    return {std::move(records), survivors, rig.hash()};
 }
 
 /// Brings in camera paths as a pool does, a chunk at a time, from all over the image.
@@ -91,8 +82,9 @@ void time_stage(benchmark::State& state, Stage stage, const RayKind& kind, std::
 
     StageRig<Lanes> rig(stage == Stage::Sort ? kSorted : PoolSettings{}, count);
     auto& stages = rig.stages();
-    Batch batch(kind, count);
-    stages.intersect(batch.records(), 0, count);
+    Records records = thawed(kind, count);
+    const auto thaw = [&] { frozen_rays(kind, count).copy_to(records, 0, 0, count); };
+    stages.intersect(records, 0, count);
     const std::vector<float> distance(stages.stream().distance(), stages.stream().distance() + count);
     const std::vector<std::int32_t> ids(stages.stream().primitive_id(), stages.stream().primitive_id() + count);
     const auto records_bytes = static_cast<double>(record_bytes<kPaper, float>());
@@ -100,7 +92,7 @@ void time_stage(benchmark::State& state, Stage stage, const RayKind& kind, std::
 
     if (stage == Stage::Intersect) {
         for (auto _ : state) {
-            stages.intersect(batch.records(), 0, count);
+            stages.intersect(records, 0, count);
             benchmark::ClobberMemory();
         }
         count_rays(state, rays, records_bytes + kHitBytes + sizeof(RayRow<float>));
@@ -109,23 +101,23 @@ void time_stage(benchmark::State& state, Stage stage, const RayKind& kind, std::
         if (!agree(state, sorted.count == one_by_one.count && sorted.hash == one_by_one.hash, "sorting changed sums"))
             return;
         const auto restore = [&] {
-            batch.restore();
+            thaw();
             std::copy(distance.begin(), distance.end(), stages.stream().distance());
             std::copy(ids.begin(), ids.end(), stages.stream().primitive_id());
         };
-        time_prepared(state, restore, [&] { stages.sort_by_material(batch.records(), 0, count); });
+        time_prepared(state, restore, [&] { stages.sort_by_material(records, 0, count); });
         count_rays(state, rays, records_bytes + kHitBytes);
     } else if (stage == Stage::Shade) {
         const auto restore = [&] {
-            batch.restore();
+            thaw();
             stages.accumulate();
         };
-        time_prepared(state, restore, [&] { stages.shade(batch.records(), 0, count); });
+        time_prepared(state, restore, [&] { stages.shade(records, 0, count); });
         count_rays(state, rays, records_bytes + kHitBytes + kContributionBytes);
     } else {
         const auto shade = [&] {
-            batch.restore();
-            stages.shade(batch.records(), 0, count);
+            thaw();
+            stages.shade(records, 0, count);
             rays = static_cast<std::int64_t>(stages.contribution_count());
         };
         time_prepared(state, shade, [&] { stages.accumulate(); });

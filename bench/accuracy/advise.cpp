@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/accuracy/changes.h"
 #include "core/base/error.h"
 #include "core/film/rare_events.h"
 #include "core/runtime/settings_text.h"
@@ -36,7 +35,9 @@ class Piloting {
 
     /// `images` receives the images, where it is wanted.
     Pilot run(const Configuration& configuration, std::int64_t spp, std::vector<Values>* images = nullptr) const {
-        Pilot pilot{configuration, spp, {}, {}, slope(configuration, spp), {}, 0, greatest_share()};
+        const double brightest = scene_.in_double.max_radiance;
+        const double greatest_share = brightest * brightest / static_cast<double>(scene_.pixel_count());
+        Pilot pilot{configuration, spp, {}, {}, slope(configuration, spp), {}, 0, greatest_share};
         std::vector<Values> made = render(configuration, spp, pilot.seconds);
         pilot.mse = variances(made);
         if (images != nullptr) *images = std::move(made);
@@ -50,11 +51,6 @@ class Piloting {
     }
 
   private:
-    [[nodiscard]] double greatest_share() const {
-        const double brightest = scene_.in_double.max_radiance;
-        return brightest * brightest / static_cast<double>(scene_.pixel_count());
-    }
-
     std::vector<Values> render(const Configuration& configuration, std::int64_t spp,
                                std::vector<double>& seconds) const {
         std::vector<Values> images;
@@ -113,10 +109,6 @@ Scene pilot_scene(Scene scene) {
     return scene;
 }
 
-bool is_better(const Target& target, const Offer& a, const Offer& b) {
-    return target.error ? a.seconds < b.seconds : a.error_interval.high < b.error_interval.high;
-}
-
 std::optional<Offer> offer(const Pilot& pilot, const Target& target) {
     const auto spp = samples_for(pilot, target);
     if (!spp) return {};
@@ -131,9 +123,11 @@ std::optional<Offer> offer(const Pilot& pilot, const Target& target) {
                  {*low * scale, *high * scale}};
 }
 
+/// The best first.
 void sort_offers(std::vector<Offer>& offers, const Target& target) {
-    std::stable_sort(offers.begin(), offers.end(),
-                     [&](const Offer& a, const Offer& b) { return is_better(target, a, b); });
+    std::stable_sort(offers.begin(), offers.end(), [&](const Offer& a, const Offer& b) {
+        return target.error ? a.seconds < b.seconds : a.error_interval.high < b.error_interval.high;
+    });
 }
 
 /// What the pilot of a change foretells of a combination with it: its factors, against float without it, multiplied.

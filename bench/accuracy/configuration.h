@@ -1,10 +1,13 @@
-/// A configuration: everything but the samples per pixel that decides what an image costs and how wrong it is.
+/// A configuration: everything but the samples per pixel that decides what an image costs and how wrong it is; and the
+/// simplifications of it that advice tries one at a time.
 ///
 /// Called by the study of speed and accuracy and by `raypool advise`.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "bench/accuracy/statistics.h"
 #include "core/runtime/engine.h"
@@ -70,5 +73,27 @@ TimedImage render_image(const Configuration& configuration, const SceneInBoth& s
 
 /// Means of a framebuffer's sums, in double: an Image has floats, whose steps would show beside small errors.
 Values channel_means(const Framebuffer& framebuffer, std::int64_t sample_count);
+
+/// What a change is a change of. Groups are combined in this order, at most one change of each.
+enum class Group : std::uint8_t { Precision, Engine, Sampler, Roulette, Split, Depth };
+
+/// One simplification: of the trusted configuration where it is of the precision, else of its twin in float.
+struct Change {
+    std::string text;
+    Group group;
+    std::function<void(Configuration&)> apply;
+
+    [[nodiscard]] Configuration applied(Configuration to) const {
+        apply(to);
+        return to;
+    }
+};
+
+/// The trusted configuration for a scene: as deep as it takes until nothing is left of a path's throughput, and not so
+/// deep as to follow paths in a closed room on and on.
+Configuration trusted_for(const CompiledScene<double>& scene);
+
+/// The first is that to float.
+std::vector<Change> changes(bool has_glass, const Configuration& trusted);
 
 }  // namespace raypool::accuracy

@@ -11,11 +11,7 @@
 
 namespace raypool::accuracy {
 
-namespace {
-
 namespace fs = std::filesystem;
-
-}  // namespace
 
 Reference::Reference(std::shared_ptr<const SceneInBoth> scene, std::int64_t half_spp, fs::path folder, int threads)
     : scene_(std::move(scene)), half_spp_(half_spp), folder_(std::move(folder)), threads_(threads) {}
@@ -55,9 +51,6 @@ void Reference::open() {
 }
 
 void Reference::load(std::size_t half) {
-    const auto refuse = [&](const std::string& why) {
-        return InputError(fmt::format("{}; remove it, and it is rendered again", why));
-    };
     try {
         Checkpoint found = read_checkpoint(file(half));
         check_same_render(found, halves_[half]);
@@ -66,7 +59,8 @@ void Reference::load(std::size_t half) {
         halves_[half] = std::move(found);
     } catch (const InputError& error) {
         const std::string why = error.what();
-        throw refuse(why.starts_with(file(half).string()) ? why : fmt::format("{}: {}", file(half).string(), why));
+        const std::string place = why.starts_with(file(half).string()) ? "" : file(half).string() + ": ";
+        throw InputError(fmt::format("{}{}; remove it, and it is rendered again", place, why));
     }
 }
 

@@ -5,7 +5,8 @@
 ///
 /// The study `stability` draws the curves and times the methods; tests/stability/ asserts the sharp points. Everything
 /// here is deterministic: inputs come from fixed seeds, and errors are judged by a wider oracle (128-bit numbers, long
-/// double) or a closed form. Ours are the kernels of core/, instantiated; what else there is lies in bench/naive/.
+/// double) or a closed form. Ours are the kernels of core/, instantiated; what several families or the failed images
+/// need beside them lies in bench/naive/.
 #pragma once
 
 #include <cstdint>
@@ -57,7 +58,7 @@ const Case& find_case(const std::string& id);
 /// The methods of cases, by the ids of the cases.
 using CaseMethods = std::vector<std::pair<std::string, std::vector<Method>>>;
 
-// The families, each in the file of its name.
+// The families, each in the file of its name; images in failures.cpp.
 CaseMethods sphere_cases();
 CaseMethods leaving_cases();
 CaseMethods coincidence_cases();

@@ -3,17 +3,59 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/naive/scattering.h"
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
+#include "core/shading/materials.h"
 
 namespace raypool::stability {
 
 namespace {
 
+// Ways to find the reflectance of light from outside (eta = 1 / 1.5) or from inside (1.5).
+/// Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, with the cosine of the ray that arrives,
+/// as in "Ray Tracing in One Weekend", chapter 11.4.
+constexpr auto kSchlick = []<class Scalar>(Scalar cosine, Scalar eta) {
+    const Scalar at_normal = (1 - eta) / (1 + eta);
+    const Scalar r0 = at_normal * at_normal;
+    const Scalar x = 1 - cosine;
+    return r0 + (1 - r0) * (x * x * x * x * x);
+};
+constexpr auto kOurReflectance = []<class Scalar>(Scalar cosine, Scalar eta) {
+    const Vec3<Scalar> normal = vec3<Scalar>(0, 1, 0);
+    const Vec3<Scalar> direction = vec3<Scalar>(std::sqrt(1 - cosine * cosine), -cosine, 0);
+    return fresnel_split<Scalar>(direction, normal, eta).reflectance;
+};
+/// Fresnel's equations without regard to eta = 1, where rounding reflects light at grazing angles.
+constexpr auto kPlainFresnel = []<class Scalar>(Scalar cosine, Scalar eta) {
+    const Scalar cos_out = std::sqrt(std::max(1 - eta * eta * (1 - cosine * cosine), Scalar(0)));
+    const Scalar r_s = (eta * cosine - cos_out) / (eta * cosine + cos_out);
+    const Scalar r_p = (cosine - eta * cos_out) / (cosine + eta * cos_out);
+    return (r_s * r_s + r_p * r_p) / 2;
+};
+
 // Ways to split light at a surface of glass.
-constexpr auto kSine = [](const auto&... hit_and_eta) { return naive::sine_dielectric(hit_and_eta...); };
-constexpr auto kUnclamped = [](const auto&... hit_and_eta) { return naive::unclamped_dielectric(hit_and_eta...); };
+/// By the cosines of both sides, with Schlick's polynomial in place of Fresnel's equations.
+template <class Scalar>
+FresnelSplit<Scalar> split_in_books(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal, Scalar eta,
+                                    Scalar cosine, Scalar cos_out) {
+    return {kSchlick(cosine, eta), unit<Scalar>(Vec3<Scalar>(eta * direction + (eta * cosine - cos_out) * normal))};
+}
+/// Snell's law by the sine of a cosine that rounding may have put above 1: the sine is then not a number.
+constexpr auto kUnclamped = []<class Scalar>(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal,
+                                             Scalar eta) -> FresnelSplit<Scalar> {
+    const Scalar cosine = -dot<Scalar>(direction, normal);
+    const Scalar sine_out = eta * std::sqrt(1 - cosine * cosine);
+    if (sine_out > 1) return {1, normal};
+    return split_in_books<Scalar>(direction, normal, eta, cosine, std::sqrt(1 - sine_out * sine_out));
+};
+/// Total reflection is decided by the sine, and the root is taken of another form of the same number: where the two
+/// disagree it is that of a negative one.
+constexpr auto kSine = []<class Scalar>(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal,
+                                        Scalar eta) -> FresnelSplit<Scalar> {
+    const Scalar cosine = std::min(-dot<Scalar>(direction, normal), Scalar(1));
+    if (eta * std::sqrt(1 - cosine * cosine) > 1) return {1, normal};
+    return split_in_books<Scalar>(direction, normal, eta, cosine, std::sqrt(1 - eta * eta * (1 - cosine * cosine)));
+};
 constexpr auto kOurs = [](const auto&... hit_and_eta) { return fresnel_split(hit_and_eta...); };
 
 /// A unit direction that arrives at an angle of that sine to the normal, as nearly as Scalar can say.
@@ -50,13 +92,6 @@ constexpr auto kCriticalAngle = []<class Scalar>(const auto& split, double part,
     });
 };
 
-// Ways to find the reflectance of light from outside (eta = 1 / 1.5) or from inside (1.5).
-constexpr auto kSchlick = [](const auto&... cosine_and_eta) { return naive::schlick(cosine_and_eta...); };
-constexpr auto kOurReflectance = []<class Scalar>(Scalar cosine, Scalar eta) {
-    const Vec3<Scalar> normal = vec3<Scalar>(0, 1, 0);
-    const Vec3<Scalar> direction = vec3<Scalar>(std::sqrt(1 - cosine * cosine), -cosine, 0);
-    return fresnel_split<Scalar>(direction, normal, eta).reflectance;
-};
 /// Against Fresnel's equations in long double. At the critical angle the reflectance has an edge, so there an error of
 /// the angle shows as one of reflectance: angles are whole hundredths of the cosine.
 std::vector<Method> reflectance_methods(double eta) {
@@ -78,8 +113,8 @@ constexpr auto kGhost = []<class Scalar>(const auto& reflectance, double cosine,
     };
     return errors_of(rays, RandomInputs(63), judge).max();
 };
-constexpr auto kSchlickGhost = [](const auto& at) { return naive::schlick(at.cosine(), 1.0F); };
-constexpr auto kFresnelGhost = [](const auto& at) { return naive::plain_fresnel(at.cosine(), 1.0F); };
+constexpr auto kSchlickGhost = [](const auto& at) { return kSchlick(at.cosine(), 1.0F); };
+constexpr auto kFresnelGhost = [](const auto& at) { return kPlainFresnel(at.cosine(), 1.0F); };
 /// Light that passes must go straight on.
 constexpr auto kOurGhost = []<class Scalar>(const Arrival<Scalar>& at) {
     const FresnelSplit<Scalar> split = fresnel_split<Scalar>(at.direction, at.normal, Scalar(1));
@@ -88,15 +123,11 @@ constexpr auto kOurGhost = []<class Scalar>(const Arrival<Scalar>& at) {
 
 template <class Split>
 auto timed(Split split) {
-    return [split](std::int64_t calls) {
-        RandomInputs random(64);
-        std::vector<Arrival<float>> arrivals;
-        for (int i = 0; i < 256; ++i) arrivals.emplace_back(random, random.uniform(0, 0.999));
-        return sum_over(arrivals, calls, [&](const Arrival<float>& at) {
-            const FresnelSplit<float> light = split(at.direction, at.normal, 1 / 1.5F);
-            return light.reflectance + light.refracted[0];
-        });
-    };
+    const auto draw = [](RandomInputs& random) { return Arrival<float>(random, random.uniform(0, 0.999)); };
+    return sum_over(RandomInputs(64), draw, [=](const Arrival<float>& at) {
+        const FresnelSplit<float> light = split(at.direction, at.normal, 1 / 1.5F);
+        return light.reflectance + light.refracted[0];
+    });
 }
 
 }  // namespace

@@ -90,13 +90,18 @@ inline double quantile_up_to_one(const Errors& errors, double p) {
     return errors.count() == 0 ? 1 : std::min(errors.quantile(p), 1.0);
 }
 
-/// The sum of what `function` makes of `calls` inputs, which are these again and again: work for the clock.
-template <class Input, class Function>
-double sum_over(const std::vector<Input>& inputs, std::int64_t calls, Function function) {
-    double sum = 0;
-    for (std::int64_t i = 0; i < calls; ++i)
-        sum += static_cast<double>(function(inputs[static_cast<std::size_t>(i) % inputs.size()]));
-    return sum;
+/// Work for the clock: the sum of what `function` makes of 256 inputs, which draw(random) made, again and again.
+template <class Draw, class Function>
+auto sum_over(RandomInputs random, Draw draw, Function function) {
+    return [=](std::int64_t calls) {
+        RandomInputs drawn = random;
+        std::vector<decltype(draw(drawn))> inputs;
+        for (int i = 0; i < 256; ++i) inputs.push_back(draw(drawn));
+        double sum = 0;
+        for (std::int64_t i = 0; i < calls; ++i)
+            sum += static_cast<double>(function(inputs[static_cast<std::size_t>(i) % inputs.size()]));
+        return sum;
+    };
 }
 
 }  // namespace raypool::stability

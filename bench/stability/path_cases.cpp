@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/naive/scattering.h"
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
 #include "bench/stability/stack.h"
@@ -104,7 +103,10 @@ constexpr auto kRouletteError = []<class Scalar>(const auto& survives, double pa
     return std::abs(sum / count - expected) / (std::sqrt(albedo) * expected / std::sqrt(count));
 };
 
-constexpr auto kNaiveMirror = [](const auto&... d_and_n) { return naive::mirror_direction(d_and_n...); };
+/// The mirrored direction, not made unit again.
+constexpr auto kNaiveMirror = []<class Scalar>(const Vec3<Scalar>& direction, const Vec3<Scalar>& normal) {
+    return along<Scalar>(direction, -2 * dot<Scalar>(direction, normal), normal);
+};
 constexpr auto kOurMirror = [](const auto&... d_and_n) { return mirror_direction(d_and_n...); };
 /// Length of a direction after so many mirrors.
 constexpr auto kDrift = []<class Scalar>(const auto& mirror, double bounces, std::int64_t) {

@@ -1,5 +1,5 @@
 /// Rays and surface points that the cases about shapes start from: aimed at a sphere with a given miss distance, at a
-/// surface point as the engines compute it, and packets of both for the clock.
+/// surface point as the engines compute it.
 #pragma once
 
 #include <vector>
@@ -38,36 +38,6 @@ SurfacePoint<Scalar> seen_point(RandomInputs& random, const Vec3<Scalar>& center
         const Scalar t = sphere_distance<Scalar>(ray.origin, ray.direction, center, radius, false);
         if (t < kInfinity<Scalar>) return sphere_point<Scalar>(ray, t, center, radius);
     }
-}
-
-/// The sum over all lanes and calls of what `test(origin, direction)` gives for packets of rays around a unit sphere at
-/// the origin, `calls` rays in all. Infinite distances are cut, so that the sum depends on every call.
-template <class Test>
-double time_rays(std::int64_t calls, Test test) {
-    constexpr int kPackets = 64;
-    constexpr int kLanesOf = kLanes<Packet>;
-    static const std::vector<Ray<Packet>> kPrepared = [] {
-        RandomInputs random(77);
-        std::vector<Ray<Packet>> all(kPackets);
-        for (Ray<Packet>& packet : all)
-            for (int lane = 0; lane < kLanesOf; ++lane) {
-                const Ray<float> ray =
-                    aimed<float>(random, vec3<float>(0, 0, 0), 1, random.uniform(2, 20), random.uniform(0, 2));
-                for (int i = 0; i < 3; ++i) {
-                    packet.origin[i][lane] = ray.origin[i];
-                    packet.direction[i][lane] = ray.direction[i];
-                }
-            }
-        return all;
-    }();
-    Packet sum(0);
-    for (std::int64_t i = 0; i < calls / kLanesOf; ++i) {
-        const Ray<Packet>& ray = kPrepared[static_cast<std::size_t>(i % kPackets)];
-        sum += min(test(ray.origin, ray.direction), Packet(1));
-    }
-    double total = 0;
-    for (int lane = 0; lane < kLanesOf; ++lane) total += raypool::lane(sum, lane);
-    return total;
 }
 
 }  // namespace raypool::stability

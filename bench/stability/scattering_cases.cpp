@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "bench/naive/random.h"
-#include "bench/naive/scattering.h"
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
 
@@ -13,7 +12,10 @@ namespace raypool::stability {
 
 namespace {
 
-constexpr auto kNaiveDiffuse = [](const auto&... n_and_u) { return naive::diffuse_direction(n_and_u...); };
+/// normal + a point of the unit sphere, whatever is left of it.
+constexpr auto kNaiveDiffuse = []<class Scalar>(const Vec3<Scalar>& normal, const Vec3<Scalar>& on_sphere) {
+    return unit<Scalar>(Vec3<Scalar>(normal + on_sphere));
+};
 constexpr auto kOurDiffuse = [](const auto&... n_and_u) { return diffuse_direction(n_and_u...); };
 /// Points of the unit sphere so close to the opposite of the normal, 0 for the very opposite: what is no direction.
 constexpr auto kNoDirection = []<class Scalar>(const auto& diffuse, double apart, std::int64_t points) {
@@ -25,7 +27,11 @@ constexpr auto kNoDirection = []<class Scalar>(const auto& diffuse, double apart
     });
 };
 
-constexpr auto kScaledUnit = [](const auto& v) { return naive::scaled_unit(v); };
+/// v scaled by its greatest component first: for lengths whose square is no number.
+constexpr auto kScaledUnit = []<class Scalar>(const Vec3<Scalar>& v) {
+    const Scalar greatest = v.cwiseAbs().maxCoeff();
+    return unit<Scalar>(vec3<Scalar>(v[0] / greatest, v[1] / greatest, v[2] / greatest));
+};
 constexpr auto kOurUnit = [](const auto& v) { return unit(v); };
 /// Vectors of length 10^-e and 10^e: how far from 1 the length of what should be unit is.
 constexpr auto kUnitError = []<class Scalar>(const auto& made_unit, double exponent, std::int64_t vectors) {

@@ -3,16 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/naive/sizes.h"
 #include "bench/stability/case.h"
 #include "bench/stability/methods.h"
 #include "core/runtime/loop.h"
+#include "core/shading/camera.h"
 #include "wavefront/engine.h"
 
 namespace raypool::stability {
 
 namespace {
 
+// Ways to number the pixels of an image.
+/// y * width + x in 32 bits; what overflows wraps around.
+std::int64_t int32_pixel(std::int64_t x, std::int64_t y, std::int64_t width) {
+    const auto product = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width);
+    return static_cast<std::int32_t>(product + static_cast<std::uint32_t>(x));
+}
 /// The engines' loop goes from the number to the pixel, and a path's key holds the number in 32 unsigned bits.
 std::int64_t our_pixel(std::int64_t x, std::int64_t y, std::int64_t width) {
     const PixelRange range = WorkItems(width, width, {Grain::Kind::Pixel, 0}).range(y * width + x);
@@ -31,8 +37,10 @@ constexpr auto kWrongPixels = []<class>(const auto& number, double edge, std::in
 };
 
 // Ways to find the direction of a camera ray through a pixel of the middle line.
-constexpr auto kJoined = [](const auto& camera, auto x, std::uint32_t, auto jitter) {
-    return naive::joined_column(camera, x, jitter);
+/// Column and jitter are added before anything else.
+constexpr auto kJoined = []<class Scalar>(const Camera<Scalar>& camera, Scalar x, std::uint32_t, Scalar jitter) {
+    const Scalar column = (x + jitter) - camera.half_width;
+    return unit<Scalar>(Vec3<Scalar>(camera.to_center + column * camera.pixel_u));
 };
 constexpr auto kOurs = []<class Scalar>(const Camera<Scalar>& camera, Scalar x, std::uint32_t sample, Scalar) {
     return camera_ray<Features{}, Scalar>(camera, x, x, 0, sample, random_seed(0)).direction;
@@ -76,8 +84,9 @@ CompiledScene<float> glass_stack() {
 }
 
 // Ways to split paths: most records in a round over the capacity of the pool.
+/// Every record of a batch is split so often before any of them ends.
 double all_at_once(int splits) {
-    return share(naive::breadth_first_records(kBatch, splits), kBatch);
+    return share(kBatch << splits, kBatch);
 }
 double in_our_pool(int splits) {
     static const CompiledScene<float> kScene = glass_stack();
@@ -101,7 +110,7 @@ constexpr auto kMostRecords = []<class>(const auto& records, double splits, std:
 }  // namespace
 
 CaseMethods size_cases() {
-    return {{"large-image", Methods(kWrongPixels).naive("int32", naive::int32_pixel).ours("ours", our_pixel)},
+    return {{"large-image", Methods(kWrongPixels).naive("int32", int32_pixel).ours("ours", our_pixel)},
             {"pixel-jitter", Methods(kJitterError).naive("pixel + jitter, float", kJoined).ours_in_both(kOurs)},
             {"splitting", Methods(kMostRecords).naive("all branches at once", all_at_once).ours("ours", in_our_pool)}};
 }

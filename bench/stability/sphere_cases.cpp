@@ -23,15 +23,37 @@ constexpr auto kDoubleOnFloat = [](const auto& origin, const auto& direction, co
     return kOurs(wide(origin), wide(direction), wide(center), static_cast<double>(radius));
 };
 
-/// The sphere is read from memory: a compiler that knew it would fold half of the test away.
+/// Packets of rays around a unit sphere at the origin.
+std::vector<Ray<Packet>> packets_around_sphere() {
+    RandomInputs random(77);
+    std::vector<Ray<Packet>> packets(64);
+    for (Ray<Packet>& packet : packets)
+        for (int lane = 0; lane < kLanes<Packet>; ++lane) {
+            const Ray<float> ray =
+                aimed<float>(random, vec3<float>(0, 0, 0), 1, random.uniform(2, 20), random.uniform(0, 2));
+            for (int i = 0; i < 3; ++i) {
+                packet.origin[i][lane] = ray.origin[i];
+                packet.direction[i][lane] = ray.direction[i];
+            }
+        }
+    return packets;
+}
+/// A call for each ray. The sphere is read from memory: a compiler that knew it would fold half of the test away.
+/// Infinite distances are cut, so that the sum depends on every call.
 template <class Way>
 auto timed(Way way) {
     return [way](std::int64_t calls) {
+        static const std::vector<Ray<Packet>> kPackets = packets_around_sphere();
         static volatile float coordinate = 0;
         static volatile float radius = 1;
         const Vec3<Packet> center = Vec3<Packet>::Constant(Packet(coordinate));
         const Packet r(radius);
-        return time_rays(calls, [&](const Vec3<Packet>& o, const Vec3<Packet>& d) { return way(o, d, center, r); });
+        Packet sum(0);
+        for (std::int64_t i = 0; i < calls / kLanes<Packet>; ++i) {
+            const Ray<Packet>& ray = kPackets[static_cast<std::size_t>(i) % kPackets.size()];
+            sum += min(way(ray.origin, ray.direction, center, r), Packet(1));
+        }
+        return static_cast<double>(stdx::reduce(sum));
     };
 }
 

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "bench/accuracy/reference.h"
-#include "bench/studies/pass_log.h"
 #include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/runner.h"
@@ -31,6 +30,7 @@ using SharedReference = std::shared_ptr<accuracy::Reference>;
 
 /// No pixel gets more.
 constexpr std::int64_t kMostSamples = 1 << 16;
+constexpr int kThreads = 1;  ///< of what is timed
 
 /// A scene, and the errors that are asked for: those of about 32 and of about 128 samples a pixel.
 struct Target {
@@ -47,25 +47,19 @@ struct AdaptivePlan {
     std::int64_t half_spp;
     int seeds;
     std::uint64_t first_seed;
-    int threads;
     int load_threads;
 };
 
 AdaptivePlan adaptive_plan(const StudyOptions& options) {
-    return {choose(options, options.width, {96, 240}),
-            32 * choose(options, options.spp, {64, 256}),
-            static_cast<int>(choose(options, options.repeats, {5, 12})),
-            options.seed,
-            1,
+    return {choose(options, options.width, {96, 240}), 32 * choose(options, options.spp, {64, 256}),
+            static_cast<int>(choose(options, options.repeats, {5, 12})), options.seed,
             options.threads != 0 ? options.threads : 8};
 }
 
 /// What a render took and made.
 struct Made {
-    accuracy::Values values;
-    RenderReport report;
+    accuracy::TimedImage image;
     AdaptiveReport adaptive;
-    std::string hash;
 };
 
 RenderSettings settings_of(std::uint64_t seed, int threads) {
@@ -80,16 +74,67 @@ Made make_adaptive(const Engine& engine, const CompiledScene<float>& scene, Rend
     Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(kMostSamples, scene.max_radiance),
                             Moments::Second);
     Made made;
-    made.report = render_adaptively(engine, scene, settings, error, framebuffer, made.adaptive);
-    made.hash = framebuffer.hash();
+    made.image.report = render_adaptively(engine, scene, settings, error, framebuffer, made.adaptive);
+    made.image.hash = framebuffer.hash();
     const double scale = 1 / framebuffer.fixed_point().scale();
     for (std::size_t i = 0; i < framebuffer.sums().size(); ++i)
-        made.values.push_back(static_cast<double>(framebuffer.sums()[i]) * scale / made.adaptive.sample_counts[i / 3]);
+        made.image.values.push_back(static_cast<double>(framebuffer.sums()[i]) * scale /
+                                    made.adaptive.sample_counts[i / 3]);
     return made;
 }
 
-/// Ways to share out the pixels of a pass. Static ones fix beforehand what each thread does, so that they can be counted with
-/// any number of threads; pools whose threads take lines as they ask for them run on the cores that there are.
+/// An engine that keeps what threads did in each unit of its renders.
+class PassLog : public Engine {
+  public:
+    explicit PassLog(const Engine& engine) : engine_(engine) {}
+    [[nodiscard]] std::string name() const override { return engine_.name(); }
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>& scene,
+                                                       const RenderSettings& settings,
+                                                       Framebuffer& framebuffer) const override {
+        return std::make_unique<Session>(passes_, engine_.begin(scene, settings, framebuffer));
+    }
+    [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<double>& scene,
+                                                       const RenderSettings& settings,
+                                                       Framebuffer& framebuffer) const override {
+        return std::make_unique<Session>(passes_, engine_.begin(scene, settings, framebuffer));
+    }
+
+    /// Segments that passes take when their slowest threads are waited for, over the segments that there are for a
+    /// thread: 1 is perfect balance.
+    [[nodiscard]] double load() const {
+        double longest = 0, fair = 0;
+        for (const RenderReport& pass : passes_) {
+            std::int64_t most = 0;
+            for (const ThreadReport& thread : pass.threads) most = std::max(most, thread.segments);
+            longest += static_cast<double>(most);
+            fair += static_cast<double>(pass.segments()) / static_cast<double>(pass.threads.size());
+        }
+        return longest / fair;
+    }
+
+  private:
+    class Session : public RenderSession {
+      public:
+        Session(std::vector<RenderReport>& passes, std::unique_ptr<RenderSession> session)
+            : passes_(passes), session_(std::move(session)) {
+            report_ = session_->report();
+        }
+
+      private:
+        RenderReport render(const RenderUnit& unit) override { return passes_.emplace_back(session_->add(unit)); }
+        RenderReport collect() override { return session_->merge(); }
+
+        std::vector<RenderReport>& passes_;
+        std::unique_ptr<RenderSession> session_;
+    };
+
+    const Engine& engine_;
+    mutable std::vector<RenderReport> passes_;
+};
+
+/// Ways to share out the pixels of a pass. Static ones fix beforehand what each thread does, so that they can be
+/// counted with any number of threads; pools whose threads take lines as they ask for them run on the cores that there
+/// are.
 struct Sharing {
     LoopWay way;
     bool is_pool;
@@ -105,33 +150,32 @@ Case pair_case(const SharedScene& scene, const SharedReference& reference, const
     const auto run = [=]() -> std::vector<Cells> {
         const wavefront::WavefrontEngine pool({});
         const double begin = omp_get_wtime();
-        const Made adaptive = make_adaptive(pool, scene->in_float, settings_of(seed, plan.threads), error);
+        const Made adaptive = make_adaptive(pool, scene->in_float, settings_of(seed, kThreads), error);
         const double adaptive_s = omp_get_wtime() - begin;
 
         const auto spp = std::max<std::int64_t>(1, std::llround(adaptive.adaptive.mean_samples()));
-        const accuracy::TimedImage same = render_image({}, *scene, {0, spp, seed, plan.threads});
+        const accuracy::TimedImage same = render_image({}, *scene, {0, spp, seed, kThreads});
         const accuracy::Halves& halves = reference->halves();
         const double truth = mean(mean_of(halves));
-        const auto row = [&](const char* method, double samples, double seconds, const accuracy::Values& values,
-                             const RenderReport& report, const std::string& hash) {
+        const auto row = [&](const char* method, double samples, double seconds, const accuracy::TimedImage& image) {
             return Cells{{"kind", "run"},
                          {"scene", scene->description.name},
                          {"target", error},
                          {"method", method},
                          {"width", plan.width},
-                         {"threads", plan.threads},
+                         {"threads", kThreads},
                          {"seed", seed},
                          {"samples", samples},
                          {"seconds", seconds},
-                         {"segments", report.segments()},
-                         {"mse", corrected_mse(values, halves)},
-                         {"shift", mean(values) / truth - 1},
-                         {"hash", hash}};
+                         {"segments", image.report.segments()},
+                         {"mse", corrected_mse(image.values, halves)},
+                         {"shift", mean(image.values) / truth - 1},
+                         {"hash", image.hash}};
         };
         const AdaptiveReport& report = adaptive.adaptive;
-        return {row("adaptive", report.mean_samples(), adaptive_s, adaptive.values, adaptive.report, adaptive.hash) +
+        return {row("adaptive", report.mean_samples(), adaptive_s, adaptive.image) +
                     Cells{{"rounds", report.rounds}, {"rmse_estimate", report.rmse}},
-                row("uniform", static_cast<double>(spp), same.report.seconds, same.values, same.report, same.hash)};
+                row("uniform", static_cast<double>(spp), same.report.seconds, same)};
     };
     return {fmt::format("{} to {:g}, seed {}", scene->description.name, error, seed), "", 1, run};
 }
@@ -149,9 +193,9 @@ std::vector<Cells> load_rows(const accuracy::SceneInBoth& scene, const AdaptiveP
 
         const PassLog adaptive(engine);
         const Made made = make_adaptive(adaptive, scene.in_float, settings, error);
-        if (!expected.empty() && made.hash != expected)
+        if (!expected.empty() && made.image.hash != expected)
             throw WrongImage(std::string(sharing.way.name) + ": another image than the first sharing made");
-        expected = made.hash;
+        expected = made.image.hash;
 
         const PassLog uniform(engine);
         settings.end_sample = std::max<std::int64_t>(1, std::llround(made.adaptive.mean_samples()));

@@ -12,17 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPython = "/usr/bin/python3";  // the one that the distribution's matplotlib is for
-constexpr int kPackageIsMissing = 3;                 // scripts/analysis/__main__.py
-
-/// Beside the command where it is installed, else in the source tree that it was built from.
-fs::path package() {
-    const fs::path installed = fs::read_symlink("/proc/self/exe").parent_path() / RAYPOOL_INSTALLED_ANALYSIS;
-    return fs::exists(installed) ? installed : fs::path(RAYPOOL_SOURCE_ANALYSIS);
-}
+constexpr int kPackageIsMissing = 3;  // scripts/analysis/__main__.py
 
 void run_analysis(const fs::path& folder, std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {kPython, "-B", package().string()});
+    arguments.insert(arguments.begin(),
+                     {kPython, "-B", own_script(RAYPOOL_INSTALLED_ANALYSIS, RAYPOOL_SOURCE_ANALYSIS)});
     const int status = fs::exists(kPython) ? run_process(arguments) : kPackageIsMissing;
     if (status == 0) return;
     throw std::runtime_error(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -41,9 +42,8 @@ std::shared_ptr<const StudyScene> endless_corridor() {
 }
 
 /// The grid up to the depth asked for, and that depth itself; all of it where none is asked for.
-template <std::size_t n>
-std::vector<std::int64_t> depths_up_to(std::int64_t most, const std::int64_t (&grid)[n]) {
-    std::vector<std::int64_t> depths(std::begin(grid), std::end(grid));
+std::vector<std::int64_t> depths_up_to(std::int64_t most, std::span<const std::int64_t> grid) {
+    std::vector<std::int64_t> depths(grid.begin(), grid.end());
     if (most == 0) return depths;
     std::erase_if(depths, [&](std::int64_t depth) { return depth >= most; });
     depths.push_back(most);
@@ -57,8 +57,9 @@ struct HalvesRender {
     std::int64_t paths = 0;
     std::int64_t segments = 0;
 };
-HalvesRender render_halves(const StudyScene& scene, RenderSettings settings, std::int64_t depth) {
-    const CompiledScene<float>& compiled = scene.compiled;
+HalvesRender render_halves(const Render& render, std::int64_t depth) {
+    const CompiledScene<float>& compiled = render.scene->compiled;
+    RenderSettings settings = render.settings;
     const std::int64_t half = settings.end_sample / 2;
     const FixedPoint fixed = FixedPoint::make(settings.end_sample, compiled.max_radiance);
     settings.depth = static_cast<std::int32_t>(depth);
@@ -68,7 +69,7 @@ HalvesRender render_halves(const StudyScene& scene, RenderSettings settings, std
         settings.first_sample = sums == &out.halves.first ? 0 : half;
         settings.end_sample = settings.first_sample + half;
         Framebuffer framebuffer(compiled.width, compiled.height, fixed);
-        const RenderReport report = fused_pool().engine->render(compiled, settings, framebuffer);
+        const RenderReport report = render.engine.engine->render(compiled, settings, framebuffer);
         sums->assign(framebuffer.sums().begin(), framebuffer.sums().end());
         out.paths += report.paths();
         out.segments += report.segments();
@@ -76,33 +77,31 @@ HalvesRender render_halves(const StudyScene& scene, RenderSettings settings, std
     return out;
 }
 
-Cells start_of_row(const char* kind, const StudyScene& scene, const std::string& engine,
-                   const RenderSettings& settings) {
+Cells start_of_row(const char* kind, const Render& render) {
     return {{"kind", kind},
-            {"scene", scene.name},
-            {"engine", engine},
-            {"threads", settings.threads},
-            {"width", scene.compiled.width},
-            {"depth", settings.depth}};
+            {"scene", render.scene->name},
+            {"engine", render.engine.name},
+            {"threads", render.settings.threads},
+            {"width", render.scene->compiled.width},
+            {"depth", render.settings.depth}};
 }
 
 /// One row for each limit: what is left of the paths, and what is missing of the light of the last. No times.
-std::vector<Cells> survival_rows(const StudyScene& scene, RenderSettings settings,
-                                 const std::vector<std::int64_t>& depths) {
+std::vector<Cells> survival_rows(Render render, const std::vector<std::int64_t>& depths) {
     std::map<std::int64_t, HalvesRender> renders;
     const auto at = [&](std::int64_t depth) -> const HalvesRender& {
-        const auto found = renders.find(depth);
-        return found != renders.end() ? found->second
-                                      : renders.emplace(depth, render_halves(scene, settings, depth)).first->second;
+        HalvesRender& made = renders[depth];
+        if (made.paths == 0) made = render_halves(render, depth);
+        return made;
     };
-    const std::int64_t half = settings.end_sample / 2;
+    const std::int64_t half = render.settings.end_sample / 2;
     const HalvesRender& reference = at(depths.back());
     std::vector<Cells> rows;
     for (const std::int64_t depth : depths) {
         const HalvesRender& cut = at(depth);
         const Loss loss = truncation_loss(reference.halves, cut.halves, cut.scale, half);
-        settings.depth = static_cast<std::int32_t>(depth);
-        rows.push_back(start_of_row(kSurvival, scene, "pool", settings) +
+        render.settings.depth = static_cast<std::int32_t>(depth);
+        rows.push_back(start_of_row(kSurvival, render) +
                        Cells{{"paths", cut.paths},
                              {"segments", cut.segments},
                              {"alive", alive_share(cut.segments, at(depth + 1).segments, cut.paths)},
@@ -115,25 +114,25 @@ std::vector<Cells> survival_rows(const StudyScene& scene, RenderSettings setting
     return rows;
 }
 
-Case timed_case(const char* kind, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
-                RenderSettings settings, std::int64_t depth, int repeats) {
-    settings.depth = static_cast<std::int32_t>(depth);
-    const auto run = [kind, engine, scene, settings]() -> std::vector<Cells> {
-        Cells row = start_of_row(kind, *scene, engine.name, settings);
+Case timed_case(const char* kind, Render render, std::int64_t depth, int repeats) {
+    render.settings.depth = static_cast<std::int32_t>(depth);
+    const auto rows = [kind](const Render& of) -> std::vector<Cells> {
+        Cells row = start_of_row(kind, of);
         try {
-            const Measured measured = measure(*engine.engine, *scene, settings);
+            const Measured measured = measure(of);
             const RenderReport& report = measured.report;
-            row = row + Cells{{"paths", report.paths()},   {"segments", report.segments()},
-                              {"seconds", report.seconds}, {"ns_per_segment", ns_per_segment(report, settings.threads)},
-                              {"outcome", kRendered},      {"hash", measured.hash}};
+            row = row +
+                  Cells{{"paths", report.paths()},   {"segments", report.segments()},
+                        {"seconds", report.seconds}, {"ns_per_segment", ns_per_segment(report, of.settings.threads)},
+                        {"outcome", kRendered},      {"hash", measured.hash}};
             if (report.memory_bytes != 0) row.emplace_back("pool_bytes", report.memory_bytes);
         } catch (const InputError& refusal) {
             row = row + Cells{{"outcome", kRefused}, {"refusal", refusal.what()}};
         }
         return {row};
     };
-    return {fmt::format("{}: {} at depth {}, {}", kind, scene->name, depth, engine.name), image_of(*scene, settings),
-            repeats, run};
+    return case_of(fmt::format("{}: {} at depth {}, {}", kind, render.scene->name, depth, render.engine.name), render,
+                   repeats, rows);
 }
 
 std::vector<Case> depth_cases(const StudyOptions& options) {
@@ -150,8 +149,9 @@ std::vector<Case> depth_cases(const StudyOptions& options) {
     settings.end_sample = 2 * ((choose(options, options.spp, {16, 128}) + 1) / 2);
     for (const std::string& name : scenes) {
         const auto scene = study_scene(name, choose(options, options.width, {120, 160}));
-        cases.push_back({"survival: " + scene->name, "", 1,
-                         [scene, settings, limits] { return survival_rows(*scene, settings, limits); }});
+        cases.push_back({"survival: " + scene->name, "", 1, [render = Render{fused_pool(), scene, settings}, limits] {
+                             return survival_rows(render, limits);
+                         }});
     }
 
     // What it costs.
@@ -161,14 +161,14 @@ std::vector<Case> depth_cases(const StudyOptions& options) {
     settings.end_sample = plan.settings.end_sample;
     for (const std::int64_t depth : depths_up_to(options.depth, kDepths))
         for (const NamedEngine& engine : engines)
-            cases.push_back(timed_case(kTime, engine, scene, settings, depth, plan.repeats));
+            cases.push_back(timed_case(kTime, {engine, scene, settings}, depth, plan.repeats));
 
     // How deep they can go.
     const auto corridor = endless_corridor();
     settings.end_sample = 1;
     for (const std::int64_t depth : depths_up_to(choose(options, options.depth, {100'000, 0}), kVeryDeep))
         for (const NamedEngine& engine : engines)
-            cases.push_back(timed_case(kDeep, engine, corridor, settings, depth, std::min(plan.repeats, 3)));
+            cases.push_back(timed_case(kDeep, {engine, corridor, settings}, depth, std::min(plan.repeats, 3)));
     return cases;
 }
 

@@ -30,7 +30,7 @@ inline constexpr auto kFeatureSets = [] {
         // Every member is written, the false ones too: g++ 12 leaves those that were not out of the symbols of the
         // templates, so that the functions of different sets get one name, and the linker keeps one of them.
         sets[i] = {kFeatureNames[i].name,
-                   {i == 0, i == 1, i == 2, i == 3 || i == 4, i == 4, i == 5, i == 6, i == 7, i == 8}};
+                   {i == 0, i == 1, i == 2, i == 3 || i == 4, i == 4, i == 5, i == 6, i == 7, i == 8, i == 9}};
     }
     sets.back() = {kControl, {.fuzz = true}};
     return sets;
@@ -44,25 +44,18 @@ using BeginFunction = std::unique_ptr<RenderSession> (*)(const CompiledScene<flo
 BeginFunction iterative_begin(std::size_t set);
 BeginFunction pool_begin(std::size_t set);
 
-/// The pool's compile slowly, so they are compiled in three parts of so many sets (features_pool.cpp).
+/// They compile slowly, so they are compiled in three parts of so many sets (feature_engines.cpp).
 inline constexpr std::size_t kPartSets = 4;
+struct FeatureFunctions {
+    BeginFunction iterative, pool;
+};
 template <std::size_t part>
-BeginFunction pool_begin_of_part(std::size_t set);
+std::vector<FeatureFunctions> functions_of_part();
 template <>
-BeginFunction pool_begin_of_part<0>(std::size_t set);
+std::vector<FeatureFunctions> functions_of_part<0>();
 template <>
-BeginFunction pool_begin_of_part<1>(std::size_t set);
+std::vector<FeatureFunctions> functions_of_part<1>();
 template <>
-BeginFunction pool_begin_of_part<2>(std::size_t set);
-
-/// The function of each set from `first` on, `count` of them, by Pick<features>::begin.
-template <template <Features> class Pick, std::size_t first, std::size_t count>
-BeginFunction begin_of_set(std::size_t set) {
-    constexpr auto kFunctions = []<std::size_t... i>(std::index_sequence<i...>) {
-        return std::array<BeginFunction, count>{&Pick<kFeatureSets[first + i].features>::begin...};
-    }
-    (std::make_index_sequence<count>());
-    return kFunctions[set - first];
-}
+std::vector<FeatureFunctions> functions_of_part<2>();
 
 }  // namespace raypool::studies

@@ -40,15 +40,11 @@ class FeatureEngine : public Engine {
     BeginFunction function_;
 };
 
-}  // namespace
-
-BeginFunction pool_begin(std::size_t set) {
-    constexpr BeginFunction (*kParts[])(std::size_t) = {pool_begin_of_part<0>, pool_begin_of_part<1>,
-                                                        pool_begin_of_part<2>};
-    return kParts[set / kPartSets](set);
+const FeatureFunctions& functions_of(std::size_t set) {
+    static const std::vector<FeatureFunctions> kParts[] = {functions_of_part<0>(), functions_of_part<1>(),
+                                                           functions_of_part<2>()};
+    return kParts[set / kPartSets][set % kPartSets];
 }
-
-namespace {
 
 /// The scene as it is, and for the code that can do everything. It is one image.
 struct Twins {
@@ -78,8 +74,8 @@ std::vector<Case> features_cases(const StudyOptions& options) {
             extra.emplace_back("record_bytes", ray_record_bytes(features, sizeof(float)));
             extra.emplace_back("record_bytes_double", ray_record_bytes(features, sizeof(double)));
         }
-        cases.push_back(render_case(fmt::format("{}, {}, compiled for {}", engine.name, scene_name, compiled), engine,
-                                    study_scene, plan.settings, plan.repeats, extra));
+        cases.push_back(render_case(fmt::format("{}, {}, compiled for {}", engine.name, scene_name, compiled),
+                                    {engine, study_scene, plan.settings}, plan.repeats, extra));
     };
     for (const auto& [engine, render] :
          {std::pair{iterative_engine(), &iterative_begin}, std::pair{fused_pool(), &pool_begin}}) {
@@ -96,6 +92,36 @@ std::vector<Case> features_cases(const StudyOptions& options) {
 }
 
 }  // namespace
+
+BeginFunction iterative_begin(std::size_t set) {
+    return functions_of(set).iterative;
+}
+BeginFunction pool_begin(std::size_t set) {
+    return functions_of(set).pool;
+}
+
+Scene plain_scene(const Scene& scene) {
+    if (scene.spheres.empty())
+        throw InputError(fmt::format("--scene: {} has no spheres, which is what a plain scene is made of", scene.name));
+    Scene plain = scene;
+    plain.name += ", plain";
+    plain.quads.clear();
+    plain.planes.clear();
+    plain.camera.defocus_angle_degrees = 0;
+    for (Sphere& sphere : plain.spheres) sphere.center1 = sphere.center0;
+
+    const auto grey = static_cast<std::int32_t>(plain.textures.size());
+    plain.textures.emplace_back().even = Vector3d::Constant(0.7);
+    for (Texture& texture : plain.textures) {
+        if (texture.kind == Texture::Kind::Image) texture.even = Vector3d::Constant(0.7);
+        texture.kind = Texture::Kind::Solid;
+    }
+    for (Material& material : plain.materials) {
+        const bool has_albedo = material.kind == Material::Kind::Diffuse || material.kind == Material::Kind::Metal;
+        material = {Material::Kind::Diffuse, has_albedo ? material.texture_id : grey};
+    }
+    return plain;
+}
 
 Study features_study() {
     return {.name = "features",

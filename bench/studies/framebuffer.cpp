@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -22,23 +21,22 @@ namespace {
 using wavefront::Accumulator;
 using wavefront::PoolSettings;
 
-constexpr const char* kInterleaved = "interleaved";
-constexpr const char* kPlanar = "planar";
-
-/// A pool whose accumulator has both layouts.
-struct Pair {
+/// A pool, and how its accumulator lays out the sums.
+struct Variant {
     const char* name;
+    const char* layout;
     PoolSettings pool;
-    Accumulator planar;
 };
-std::vector<Pair> pairs() {
-    return {{"a pool for each thread", rung_settings("beam", 1), Accumulator::OwnedPlanarInt64},
-            {"the paper's pool, shared", rung_settings("shared-stream", 1), Accumulator::AtomicPlanarInt64}};
-}
-PoolSettings in_layout(const Pair& pair, const char* layout) {
-    PoolSettings pool = pair.pool;
-    if (layout == std::string_view(kPlanar)) pool.accumulator = pair.planar;
-    return pool;
+std::vector<Variant> variants() {
+    std::vector<Variant> all;
+    const auto add = [&](const char* name, PoolSettings pool, Accumulator planar) {
+        all.push_back({name, "interleaved", pool});
+        pool.accumulator = planar;
+        all.push_back({name, "planar", pool});
+    };
+    add("a pool for each thread", rung_settings("beam", 1), Accumulator::OwnedPlanarInt64);
+    add("the paper's pool, shared", rung_settings("shared-stream", 1), Accumulator::AtomicPlanarInt64);
+    return all;
 }
 
 /// Behind the cells of every render.
@@ -77,20 +75,13 @@ std::vector<std::string> render_arguments(const std::string& scene, std::int64_t
     return arguments;
 }
 
-Case time_case(const Pair& pair, const char* layout, const std::shared_ptr<const StudyScene>& scene,
-               const RenderSettings& settings, int repeats) {
-    return render_case(fmt::format("time: {}, {}, width {}, {} spp, {} threads", pair.name, layout,
-                                   scene->compiled.width, settings.end_sample, settings.threads),
-                       pool_engine(pair.name, in_layout(pair, layout)), scene, settings, repeats,
-                       layout_cells(*scene, settings, layout, "clock"));
-}
-
 /// Rows of counts have no time: counting disturbs it.
-Cells count_cells(const Pair& pair, const StudyScene& scene, const RenderSettings& settings, const std::string& hash,
+Cells count_cells(const Render& render, const Variant& variant, const char* source, const std::string& hash,
                   const char* part, const CacheCounts& counts) {
-    return Cells{{"engine", pair.name},
-                 {"threads", settings.threads},
-                 {"width", scene.compiled.width},
+    return layout_cells(*render.scene, render.settings, variant.layout, source) +
+           Cells{{"engine", render.engine.name},
+                 {"threads", render.settings.threads},
+                 {"width", render.scene->compiled.width},
                  {"hash", hash},
                  {"part", part},
                  {"data_reads", or_null(counts.reads)},
@@ -99,36 +90,20 @@ Cells count_cells(const Pair& pair, const StudyScene& scene, const RenderSetting
                  {"d1_write_misses", or_null(counts.d1_write_misses)},
                  {"ll_read_misses", or_null(counts.ll_read_misses)},
                  {"ll_write_misses", or_null(counts.ll_write_misses)}} +
-           loop_cells(loops_over_image(pair.pool), settings);
+           loop_cells(render.engine.engine->loops_over_image(), render.settings);
 }
 
-Case hardware_case(const Pair& pair, const char* layout, const std::shared_ptr<const StudyScene>& scene,
-                   const RenderSettings& settings, int repeats) {
-    const auto run = [pair, layout, scene, settings]() -> std::vector<Cells> {
-        std::string hash;
-        const auto counts = count_by_hardware(
-            [&] { hash = measure(wavefront::WavefrontEngine(in_layout(pair, layout)), *scene, settings).hash; });
-        return {layout_cells(*scene, settings, layout, "hardware counters") +
-                count_cells(pair, *scene, settings, hash, "render", counts.value_or(CacheCounts{}))};
-    };
-    return {fmt::format("counters: {}, {}, width {}, {} spp", pair.name, layout, scene->compiled.width,
-                        settings.end_sample),
-            image_of(*scene, settings), repeats, run};
+std::vector<Cells> hardware_rows(const Render& render, const Variant& variant) {
+    std::string hash;
+    const auto counts = count_by_hardware([&] { hash = measure(render).hash; });
+    return {count_cells(render, variant, "hardware counters", hash, "render", counts.value_or(CacheCounts{}))};
 }
 
-Case cachegrind_case(const Pair& pair, const char* layout, const std::string& file,
-                     const std::shared_ptr<const StudyScene>& scene, const RenderSettings& settings) {
-    const auto run = [pair, layout, file, scene, settings]() -> std::vector<Cells> {
-        const Cachegrind found =
-            run_cachegrind(render_arguments(file, scene->compiled.width, settings, in_layout(pair, layout)));
-        const auto row = [&](const char* part, const CacheCounts& counts) {
-            return layout_cells(*scene, settings, layout, "cachegrind") +
-                   count_cells(pair, *scene, settings, found.hash, part, counts);
-        };
-        return {row("render", found.rendering), row("accumulate", found.accumulating)};
-    };
-    return {fmt::format("cachegrind: {}, {}, width {}", pair.name, layout, scene->compiled.width),
-            image_of(*scene, settings), 1, run};
+std::vector<Cells> cachegrind_rows(const Render& render, const Variant& variant, const std::string& file) {
+    const Cachegrind found =
+        run_cachegrind(render_arguments(file, render.scene->compiled.width, render.settings, variant.pool));
+    return {count_cells(render, variant, "cachegrind", found.hash, "render", found.rendering),
+            count_cells(render, variant, "cachegrind", found.hash, "accumulate", found.accumulating)};
 }
 
 bool has_hardware_counters() {
@@ -144,36 +119,46 @@ std::vector<Case> framebuffer_cases(const StudyOptions& options) {
     RenderSettings settings = plan.settings;
     settings.schedule = parse_schedule("dynamic");
     std::vector<Case> cases;
-    const auto each_layout = [&](const auto& scene, std::int64_t samples, const auto& make) {
+    // make(what it renders in words, variant, render) is a case.
+    const auto each_variant = [&](const auto& scene, std::int64_t samples, const auto& make) {
         settings.end_sample = samples;
-        for (const Pair& pair : pairs())
-            for (const char* layout : {kInterleaved, kPlanar}) cases.push_back(make(pair, layout, scene));
+        for (const Variant& variant : variants())
+            cases.push_back(make(fmt::format("{}, {}, width {}", variant.name, variant.layout, scene->compiled.width),
+                                 variant, Render{pool_engine(variant.name, variant.pool), scene, settings}));
     };
     // One image smaller than the second-level cache and one larger, with as many paths.
     const auto large = study_scene(options.scene, width);
     const auto small = study_scene(options.scene, std::max<std::int64_t>(width / kSmaller, 1));
     const auto each_size = [&](const auto& make) {
-        each_layout(small, spp * kSmaller * kSmaller, make);
-        each_layout(large, spp, make);
+        each_variant(small, spp * kSmaller * kSmaller, make);
+        each_variant(large, spp, make);
     };
 
     for (const int threads : one_and_all(plan.most_threads)) {
         settings.threads = threads;
-        each_size([&](const auto&... what) { return time_case(what..., settings, plan.repeats); });
+        each_size([&](const std::string& what, const Variant& variant, const Render& render) {
+            return render_case(fmt::format("time: {}, {} spp, {} threads", what, settings.end_sample, threads), render,
+                               plan.repeats, layout_cells(*render.scene, settings, variant.layout, "clock"));
+        });
     }
 
     // Misses, of one thread.
     settings.threads = 1;
     if (has_hardware_counters()) {
-        each_size([&](const auto&... what) { return hardware_case(what..., settings, plan.repeats); });
+        each_size([&](const std::string& what, const Variant& variant, const Render& render) {
+            return case_of(fmt::format("counters: {}, {} spp", what, settings.end_sample), render, plan.repeats,
+                           [variant](const Render& of) { return hardware_rows(of, variant); });
+        });
     } else if (cachegrind_command().why.empty()) {
-        const auto make = [&](const Pair& pair, const char* layout, const auto& scene) {
-            return cachegrind_case(pair, layout, options.scene, scene, settings);
+        const auto make = [&](const std::string& what, const Variant& variant, const Render& render) {
+            return case_of("cachegrind: " + what, render, 1, [variant, file = options.scene](const Render& of) {
+                return cachegrind_rows(of, variant, file);
+            });
         };
         const std::int64_t most_width = std::min(width, kSimulatedWidth);
         if (!options.is_quick)
-            each_layout(study_scene(options.scene, std::max<std::int64_t>(most_width * 2 / 5, 1)), 2, make);
-        each_layout(study_scene(options.scene, most_width), options.is_quick ? 1 : 2, make);
+            each_variant(study_scene(options.scene, std::max<std::int64_t>(most_width * 2 / 5, 1)), 2, make);
+        each_variant(study_scene(options.scene, most_width), options.is_quick ? 1 : 2, make);
     }
     return cases;
 }

@@ -59,51 +59,43 @@ Cells parts_of_pool(const RenderReport& report, const Features& features, const 
             {"end_s", end_s}};
 }
 
-Case rate_case(const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
-               const RenderSettings& settings, int repeats) {
-    const auto run = [engine, scene, settings]() -> std::vector<Cells> {
-        const Measured measured = measure(*engine.engine, *scene, settings);
-        return {render_cells(engine, *scene, settings, measured) +
-                Cells{{"segments", measured.report.segments()}, {"clocks", "off"}}};
-    };
-    return {fmt::format("{}, {} threads", engine.name, settings.threads), image_of(*scene, settings), repeats, run};
-}
-
-Case split_case(const wavefront::Rung& rung, const std::shared_ptr<const StudyScene>& scene, RenderSettings settings,
-                int repeats) {
-    settings.log_rounds = true;
-    const auto run = [rung, scene, settings]() -> std::vector<Cells> {
-        const NamedEngine engine = pool_engine(rung.name, rung.pool);
-        const Measured measured = measure(*engine.engine, *scene, settings);
-        return {render_cells(engine, *scene, settings, measured) +
-                Cells{{"segments", measured.report.segments()}, {"clocks", "on"}} +
-                parts_of_pool(measured.report, scene->compiled.features, rung.pool)};
-    };
-    return {fmt::format("{}, {} threads, clocks on", rung.name, settings.threads), image_of(*scene, settings), repeats,
-            run};
-}
-
 std::vector<Case> ladder_cases(const StudyOptions& options) {
     const auto scene = study_scene(options.scene, choose(options, options.width, {200, 400}));
     const Plan plan = plan_of(options, {8, 24}, {5, 7}, core_count());
     RenderSettings settings = plan.settings;
     settings.schedule = parse_schedule("dynamic");
     std::vector<Case> cases;
+    const auto add_rate = [&](const NamedEngine& engine) {
+        const auto more = [](const RenderReport& report) {
+            return Cells{{"segments", report.segments()}, {"clocks", "off"}};
+        };
+        cases.push_back(render_case(fmt::format("{}, {} threads", engine.name, settings.threads),
+                                    {engine, scene, settings}, plan.repeats, more));
+    };
+    const auto add_split = [&](const wavefront::Rung& rung) {
+        RenderSettings logged = settings;
+        logged.log_rounds = true;
+        const auto more = [scene, pool = rung.pool](const RenderReport& report) {
+            return Cells{{"segments", report.segments()}, {"clocks", "on"}} +
+                   parts_of_pool(report, scene->compiled.features, pool);
+        };
+        cases.push_back(render_case(fmt::format("{}, {} threads, clocks on", rung.name, settings.threads),
+                                    {pool_engine(rung.name, rung.pool), scene, logged}, plan.repeats, more));
+    };
     for (const int threads : one_and_all(plan.most_threads)) {
         settings.threads = threads;
-        for (const NamedEngine& engine : {recursive_engine(), iterative_engine()})
-            cases.push_back(rate_case(engine, scene, settings, plan.repeats));
-        for (const NamedEngine& engine : ladder_engines(threads))
-            cases.push_back(rate_case(engine, scene, settings, plan.repeats));
-        for (const wavefront::Rung& rung : wavefront::ladder(threads))
-            cases.push_back(split_case(rung, scene, settings, plan.repeats));
+        const std::vector<wavefront::Rung> rungs = wavefront::ladder(threads);
+        add_rate(recursive_engine());
+        add_rate(iterative_engine());
+        for (const wavefront::Rung& rung : rungs) add_rate(pool_engine(rung.name, rung.pool));
+        for (const wavefront::Rung& rung : rungs) add_split(rung);
 #ifdef RAYPOOL_HAS_EMBREE
         using peers::EmbreeEngine;
         using peers::EmbreeRays;
         for (const NamedEngine& engine :
              {NamedEngine{"Embree, single rays", std::make_shared<EmbreeEngine>(EmbreeRays::Single)},
               NamedEngine{"Embree, packets", std::make_shared<EmbreeEngine>(EmbreeRays::Packet)}}) {
-            cases.push_back(rate_case(engine, scene, settings, plan.repeats));
+            add_rate(engine);
             cases.back().image.clear();  // a hit that Embree's rounding loses must not stop the study
         }
 #endif

@@ -26,13 +26,13 @@ constexpr LoopWay kLoadWays[] = {
 };
 constexpr const char* kShares = "one of all paths, equal shares";
 
-std::vector<Cells> count_rows(const std::string& group, const std::string& way, const Engine& engine,
-                              const StudyScene& scene, RenderSettings settings) {
-    settings.count_work = true;
-    const Measured counted = measure(engine, scene, settings);
-    settings.count_work = false;
-    const bool is_timed = settings.threads <= core_count();
-    const Measured timed = is_timed ? measure(engine, scene, settings) : counted;
+std::vector<Cells> count_rows(const std::string& group, const std::string& way, Render render) {
+    const int threads = render.settings.threads;
+    const bool is_timed = threads <= core_count();
+    render.settings.count_work = true;
+    const Measured counted = measure(render);
+    render.settings.count_work = false;
+    const Measured timed = is_timed ? measure(render) : counted;
     if (timed.hash != counted.hash) throw WrongImage(way + ": the image differs when tests are counted");
     std::vector<Cells> rows;
     for (std::size_t i = 0; i < counted.report.threads.size(); ++i) {
@@ -40,7 +40,7 @@ std::vector<Cells> count_rows(const std::string& group, const std::string& way, 
         rows.push_back({{"group", group},
                         {"way", way},
                         {"source", "counted"},
-                        {"threads", settings.threads},
+                        {"threads", threads},
                         {"thread", i},
                         {"segments", work.segments},
                         {"box_tests", work.box_tests},
@@ -97,9 +97,8 @@ std::vector<Case> load_cases(const StudyOptions& options) {
     std::vector<LoopWay> replayed;
     const auto add = [&](const std::string& group, const NamedEngine& engine, const LoopWay& way) {
         settings = with_way(settings, way);
-        cases.push_back(
-            {fmt::format("{}, {}", group, way.name), image_of(*scene, settings), repeats,
-             [=, name = std::string(way.name)] { return count_rows(group, name, *engine.engine, *scene, settings); }});
+        const auto rows = [=, name = std::string(way.name)](const Render& of) { return count_rows(group, name, of); };
+        cases.push_back(case_of(fmt::format("{}, {}", group, way.name), {engine, scene, settings}, repeats, rows));
     };
     for (const LoopWay& way : kLoadWays) {
         if (is_timed || parse_schedule(way.schedule).kind == LoopSchedule::Kind::Static) {

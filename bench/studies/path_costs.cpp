@@ -77,6 +77,19 @@ std::vector<double> time_lines(const StudyScene& scene, const RenderSettings& se
                              [&]<Features features>() { return time_lines<features>(scene.compiled, settings, step); });
 }
 
+/// Calls visit(item, first path, end) for each line of each item that the grain cuts the image into.
+template <class Visit>
+void for_each_line(const PathCosts& costs, const Grain& grain, Visit visit) {
+    const WorkItems work(costs.width, costs.height, grain);
+    for (std::int64_t i = 0; i < work.count(); ++i) {
+        const PixelRange range = work.range(i);
+        for (std::int64_t y = range.y_begin; y < range.y_end; ++y)
+            visit(static_cast<std::size_t>(i),
+                  static_cast<std::size_t>((y * costs.width + range.x_begin) * costs.samples),
+                  static_cast<std::size_t>((y * costs.width + range.x_end) * costs.samples));
+    }
+}
+
 /// Least squares through the origin in two variables. Where lines are too few or too noisy for two, in one.
 CostModel fit(const std::vector<Tally>& lines, const std::vector<double>& seconds) {
     double ss = 0;
@@ -109,14 +122,11 @@ Tally PathCosts::tally(std::int64_t first_path, std::int64_t end_path) const {
 }
 
 std::vector<Tally> PathCosts::items(const Grain& grain) const {
-    const WorkItems work(width, height, grain);
-    std::vector<Tally> items(static_cast<std::size_t>(work.count()));
-    for (std::int64_t i = 0; i < work.count(); ++i) {
-        const PixelRange range = work.range(i);
-        for (std::int64_t y = range.y_begin; y < range.y_end; ++y)
-            items[static_cast<std::size_t>(i)].add(
-                tally((y * width + range.x_begin) * samples, (y * width + range.x_end) * samples));
-    }
+    std::vector<Tally> items;
+    for_each_line(*this, grain, [&](std::size_t item, std::size_t begin, std::size_t end) {
+        items.resize(item + 1);
+        items[item].add(tally(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end)));
+    });
     return items;
 }
 
@@ -154,22 +164,17 @@ PathCosts record_costs(const StudyScene& scene, const RenderSettings& settings) 
 
 ItemOrder in_order(const PathCosts& costs, const Grain& grain, const CostModel& model, std::size_t capacity) {
     const std::vector<float> segment_costs = costs.segment_costs(model);
-    const WorkItems work(costs.width, costs.height, grain);
     ItemOrder order{{0}, {}, {{0}, {}}};
     order.cost.reserve(segment_costs.size());
-    for (std::int64_t i = 0; i < work.count(); ++i) {
-        const PixelRange range = work.range(i);
-        for (std::int64_t y = range.y_begin; y < range.y_end; ++y) {
-            const auto begin = static_cast<std::size_t>((y * costs.width + range.x_begin) * costs.samples);
-            const auto end = static_cast<std::size_t>((y * costs.width + range.x_end) * costs.samples);
-            for (std::size_t path = begin; path < end; ++path)
-                order.first.push_back(order.first.back() + costs.first[path + 1] - costs.first[path]);
-            order.cost.insert(order.cost.end(), segment_costs.begin() + costs.first[begin],
-                              segment_costs.begin() + costs.first[end]);
-        }
-        order.items.first_path.push_back(static_cast<std::uint32_t>(order.first.size() - 1));
-        order.items.most_held.push_back(capacity);
-    }
+    for_each_line(costs, grain, [&](std::size_t item, std::size_t begin, std::size_t end) {
+        for (std::size_t path = begin; path < end; ++path)
+            order.first.push_back(order.first.back() + costs.first[path + 1] - costs.first[path]);
+        order.cost.insert(order.cost.end(), segment_costs.begin() + costs.first[begin],
+                          segment_costs.begin() + costs.first[end]);
+        order.items.first_path.resize(item + 2);
+        order.items.first_path.back() = static_cast<std::uint32_t>(order.first.size() - 1);
+        order.items.most_held.resize(item + 1, capacity);
+    });
     return order;
 }
 

@@ -68,6 +68,8 @@ struct ItemOrder {
     std::vector<std::uint32_t> first;  ///< segment of each path, and the end
     std::vector<float> cost;           ///< of each segment
     PoolItems items;
+
+    [[nodiscard]] SegmentCosts segments() const { return {first, cost}; }
 };
 /// For pools of `capacity` paths.
 ItemOrder in_order(const PathCosts& costs, const Grain& grain, const CostModel& model, std::size_t capacity);

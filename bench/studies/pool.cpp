@@ -75,33 +75,28 @@ Case pool_case(const std::string& axis, const Line& line, const std::shared_ptr<
                const RenderSettings& settings, int repeats) {
     return render_case(fmt::format("{}: {}, {} records, sort {}, batch {}, {} threads", axis, line.name,
                                    line.pool.capacity, to_string(line.pool.sort), line.pool.batch, settings.threads),
-                       pool_engine(line.name, line.pool), scene, settings, repeats, pool_cells(axis, line.pool));
+                       {pool_engine(line.name, line.pool), scene, settings}, repeats, pool_cells(axis, line.pool));
 }
 
 /// A row for each round in which records were advanced. After a round without any, a pool that drains is full again:
 /// `depth` counts from there.
-Case rounds_case(const Line& line, const std::shared_ptr<const StudyScene>& scene, RenderSettings settings) {
-    settings.log_rounds = true;
-    const auto run = [line, scene, settings]() {
-        const NamedEngine engine = pool_engine(line.name, line.pool);
-        const Measured measured = measure(*engine.engine, *scene, settings);
-        std::vector<Cells> rows;
-        std::int64_t round = 0;
-        std::int64_t depth = 0;
-        for (const RoundReport& work : pool_report(measured.report).rounds) {
-            depth = work.records_in == 0 ? 0 : depth + 1;
-            ++round;
-            if (work.records_in == 0) continue;
-            rows.push_back(render_cells(engine, *scene, settings, measured) + pool_cells("rounds", line.pool) +
-                           Cells{{"round", round},
-                                 {"depth", line.pool.refill == Refill::Drain ? Value(depth) : Value(nullptr)},
-                                 {"records_in", work.records_in},
-                                 {"records_out", work.records_out},
-                                 {"lanes", work.lanes}});
-        }
-        return rows;
-    };
-    return {fmt::format("rounds: {}", line.name), image_of(*scene, settings), 1, run};
+std::vector<Cells> round_rows(const Render& render, const PoolSettings& pool) {
+    const Measured measured = measure(render);
+    std::vector<Cells> rows;
+    std::int64_t round = 0;
+    std::int64_t depth = 0;
+    for (const RoundReport& work : pool_report(measured.report).rounds) {
+        depth = work.records_in == 0 ? 0 : depth + 1;
+        ++round;
+        if (work.records_in == 0) continue;
+        rows.push_back(render_cells(render, measured) + pool_cells("rounds", pool) +
+                       Cells{{"round", round},
+                             {"depth", pool.refill == Refill::Drain ? Value(depth) : Value(nullptr)},
+                             {"records_in", work.records_in},
+                             {"records_out", work.records_out},
+                             {"lanes", work.lanes}});
+    }
+    return rows;
 }
 
 /// The pools that all threads share, but for the paper's own.
@@ -117,12 +112,14 @@ void add_rounds(std::vector<Case>& cases, const std::shared_ptr<const StudyScene
     constexpr std::int64_t kFillings = 4;
     const std::int64_t pixels = scene->compiled.pixel_count();
     settings.threads = 1;  // so that every run has the same rounds
+    settings.log_rounds = true;
     settings.end_sample =
         std::clamp<std::int64_t>(kFillings * PoolSettings::kSharedCapacity / pixels, 1, settings.end_sample);
     for (Line line : shared_lines()) {
         line.pool.capacity =
             std::clamp<std::int64_t>(pixels * settings.end_sample / kFillings, 64, PoolSettings::kSharedCapacity);
-        cases.push_back(rounds_case(line, scene, settings));
+        cases.push_back(case_of("rounds: " + line.name, {pool_engine(line.name, line.pool), scene, settings}, 1,
+                                [pool = line.pool](const Render& render) { return round_rows(render, pool); }));
     }
 }
 
@@ -136,8 +133,8 @@ std::vector<Case> pool_study_cases(const StudyOptions& options) {
     std::vector<Case> cases;
     for (const int threads : one_and_all(plan.most_threads)) {
         settings.threads = threads;
-        cases.push_back(render_case(fmt::format("recursive, {} threads", threads), recursive_engine(), scene, settings,
-                                    plan.repeats, {{"axis", "recursion"}}));
+        cases.push_back(render_case(fmt::format("recursive, {} threads", threads),
+                                    {recursive_engine(), scene, settings}, plan.repeats, Cells{{"axis", "recursion"}}));
         for (Line line : lines()) {
             for (const std::int64_t capacity : capacities(paths, options.is_quick ? 16 : 4)) {
                 line.pool.capacity = capacity;

@@ -31,4 +31,9 @@ int run_process(const std::vector<std::string>& arguments) {
     return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
+std::string own_script(const std::filesystem::path& installed, const std::filesystem::path& source) {
+    const auto beside = std::filesystem::read_symlink("/proc/self/exe").parent_path() / installed;
+    return (std::filesystem::exists(beside) ? beside : source).string();
+}
+
 }  // namespace raypool::studies

@@ -61,43 +61,32 @@ class UnitCosts {
     std::vector<std::vector<double>> until_;  ///< by recorded sample and place: of the places before
 };
 
-/// What all cases share, made by the first of them.
-class Recording {
-  public:
-    Recording(std::shared_ptr<const StudyScene> scene, const RenderSettings& settings, int repeats)
-        : scene_(std::move(scene)), settings_(settings), repeats_(repeats) {}
+/// Seconds of a unit without work, measured: one pixel, in the session of all units. What a rank sets up once and
+/// merges once is not in it.
+double measure_unit_start(const CompiledScene<float>& scene, RenderSettings settings) {
+    constexpr std::int64_t kUnits = 9;
+    settings.threads = 1;
+    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(kUnits, scene.max_radiance));
+    const auto session = recursive_engine().engine->begin(scene, settings, framebuffer);
+    const std::vector<std::uint32_t> one_pixel{0};
+    double least = std::numeric_limits<double>::infinity();
+    for (std::int64_t i = 0; i < kUnits; ++i) least = std::min(least, session->add({i, i + 1, &one_pixel}).seconds);
+    return least;
+}
 
-    const UnitCosts& costs() {
-        if (costs_ == nullptr) {
-            const PathCosts paths = record_costs(*scene_, settings_);
-            costs_ = std::make_unique<UnitCosts>(paths, fit_costs(*scene_, settings_, paths, repeats_).model);
-        }
-        return *costs_;
-    }
-    /// Of a unit without work, measured: one pixel, in the session of all units. What a rank sets up once and merges
-    /// once is not in it.
-    double unit_start() {
-        if (unit_start_ > 0) return unit_start_;
-        RenderSettings settings = settings_;
-        settings.threads = 1;
-        const CompiledScene<float>& scene = scene_->compiled;
-        Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(kUnits, scene.max_radiance));
-        const auto session = recursive_engine().engine->begin(scene, settings, framebuffer);
-        const std::vector<std::uint32_t> one_pixel{0};
-        unit_start_ = std::numeric_limits<double>::infinity();
-        for (std::int64_t i = 0; i < kUnits; ++i)
-            unit_start_ = std::min(unit_start_, session->add({i, i + 1, &one_pixel}).seconds);
-        return unit_start_;
-    }
-
-  private:
-    std::shared_ptr<const StudyScene> scene_;
-    RenderSettings settings_;
-    int repeats_;
-    static constexpr std::int64_t kUnits = 9;
-    std::unique_ptr<const UnitCosts> costs_;
-    double unit_start_ = 0;
+/// What all cases share.
+struct Recording {
+    Lazy<UnitCosts> costs;
+    Lazy<double> unit_start;
 };
+std::shared_ptr<Recording> recording_of(const std::shared_ptr<const StudyScene>& scene, const Plan& plan) {
+    const auto costs = [=] {
+        const PathCosts paths = record_costs(*scene, plan.settings);
+        return UnitCosts(paths, fit_costs(*scene, plan.settings, paths, plan.repeats).model);
+    };
+    const auto unit_start = [=] { return measure_unit_start(scene->compiled, plan.settings); };
+    return std::make_shared<Recording>(Recording{Lazy<UnitCosts>(costs), Lazy<double>(unit_start)});
+}
 
 Cells simulate(Recording& recording, std::int64_t spp, int ranks) {
     const UnitCosts& costs = recording.costs();
@@ -130,7 +119,7 @@ Cells simulate(Recording& recording, std::int64_t spp, int ranks) {
 std::vector<Case> rank_cases(const StudyOptions& options) {
     const auto scene = study_scene(options.scene, choose(options, options.width, {160, 800}));
     const Plan plan = plan_of(options, {2, 4}, {1, 5}, 1);
-    const auto recording = std::make_shared<Recording>(scene, plan.settings, plan.repeats);
+    const auto recording = recording_of(scene, plan);
     std::vector<Case> cases;
     for (const std::int64_t spp : {100, 1000, 10000, 100000})
         for (int power = 1; power <= kMostRanks; power *= 10)

@@ -17,6 +17,20 @@
 
 namespace raypool::studies {
 
+namespace {
+
+/// What fixes the image: cases with the same text must have the same hash.
+std::string image_of(const Render& render) {
+    const StudyScene& scene = *render.scene;
+    const RenderSettings& settings = render.settings;
+    return fmt::format("{} {} x {}, samples {} to {}, depth {}, split {}, seed {}{}{}", scene.name,
+                       scene.compiled.width, scene.compiled.height, settings.first_sample, settings.end_sample,
+                       settings.depth, settings.split_depth, settings.seed,
+                       settings.sampler == Sampler::Sobol ? ", sobol" : "", settings.roulette ? ", roulette" : "");
+}
+
+}  // namespace
+
 std::shared_ptr<const StudyScene> study_scene(const std::string& name, std::int64_t width) {
     Scene scene = load_scene(name);
     set_width(scene, width);
@@ -43,11 +57,6 @@ wavefront::PoolSettings rung_settings(const std::string& rung, int threads) {
     const auto found = std::find_if(rungs.begin(), rungs.end(), [&](const auto& r) { return r.name == rung; });
     RAYPOOL_CHECK(found != rungs.end(), "the ladder has the rung");
     return found->pool;
-}
-std::vector<NamedEngine> ladder_engines(int threads) {
-    std::vector<NamedEngine> engines;
-    for (const wavefront::Rung& rung : wavefront::ladder(threads)) engines.push_back(pool_engine(rung.name, rung.pool));
-    return engines;
 }
 
 RenderSettings with_way(RenderSettings settings, const LoopWay& way) {
@@ -84,13 +93,6 @@ Measured measure(const Engine& engine, const StudyScene& scene, const RenderSett
     return {std::move(report), framebuffer.hash()};
 }
 
-std::string image_of(const StudyScene& scene, const RenderSettings& settings) {
-    return fmt::format("{} {} x {}, samples {} to {}, depth {}, split {}, seed {}{}{}", scene.name,
-                       scene.compiled.width, scene.compiled.height, settings.first_sample, settings.end_sample,
-                       settings.depth, settings.split_depth, settings.seed,
-                       settings.sampler == Sampler::Sobol ? ", sobol" : "", settings.roulette ? ", roulette" : "");
-}
-
 std::vector<Column> render_columns(const std::vector<Column>& more) {
     std::vector<Column> columns{
         {"engine", ColumnType::Text, "who rendered"},
@@ -107,18 +109,17 @@ std::vector<Column> render_columns(const std::vector<Column>& more) {
     return columns;
 }
 
-Cells render_cells(const NamedEngine& engine, const StudyScene& scene, const RenderSettings& settings,
-                   const Measured& measured) {
+Cells render_cells(const Render& render, const Measured& measured) {
     const RenderReport& report = measured.report;
-    Cells cells{{"engine", engine.name},
-                {"threads", settings.threads},
-                {"width", scene.compiled.width},
+    Cells cells{{"engine", render.engine.name},
+                {"threads", render.settings.threads},
+                {"width", render.scene->compiled.width},
                 {"seconds", report.seconds},
                 {"mpaths_per_s", static_cast<double>(report.paths()) / report.seconds * 1e-6},
                 {"load_max_over_mean", max_over_mean(by_thread(report, &ThreadReport::segments))},
                 {"waiting", waiting(report)},
                 {"hash", measured.hash}};
-    return cells + loop_cells(engine.engine->loops_over_image(), settings);
+    return cells + loop_cells(render.engine.engine->loops_over_image(), render.settings);
 }
 
 Cells loop_cells(bool loops_over_image, const RenderSettings& settings) {
@@ -128,12 +129,18 @@ Cells loop_cells(bool loops_over_image, const RenderSettings& settings) {
     return cells;
 }
 
-Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
-                 const RenderSettings& settings, int repeats, const Cells& extra) {
-    const auto run = [engine, scene, settings, extra]() -> std::vector<Cells> {
-        return {render_cells(engine, *scene, settings, measure(*engine.engine, *scene, settings)) + extra};
-    };
-    return {std::move(id), image_of(*scene, settings), repeats, run};
+Case case_of(std::string id, const Render& render, int repeats,
+             const std::function<std::vector<Cells>(const Render& render)>& rows) {
+    return {std::move(id), image_of(render), repeats, [=] { return rows(render); }};
+}
+Case render_case(std::string id, const Render& render, int repeats, const MoreCells& more) {
+    return case_of(std::move(id), render, repeats, [more](const Render& of) -> std::vector<Cells> {
+        const Measured measured = measure(of);
+        return {render_cells(of, measured) + more(measured.report)};
+    });
+}
+Case render_case(std::string id, const Render& render, int repeats, const Cells& more) {
+    return render_case(std::move(id), render, repeats, [more](const RenderReport&) { return more; });
 }
 
 std::vector<int> thread_counts(int most) {

@@ -1,8 +1,11 @@
 /// Renders as cases of a study: one engine, one setting, timed, with the figures that every study wants of a render.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/studies/study.h"
@@ -20,6 +23,21 @@ struct StudyScene {
 /// Throws InputError for a scene that cannot be read or a width that cannot be.
 std::shared_ptr<const StudyScene> study_scene(const std::string& name, std::int64_t width);
 
+/// A value that is dear to make, made when it is first asked for: a study is planned more often than it is run.
+template <class T>
+class Lazy {
+  public:
+    explicit Lazy(std::function<T()> make) : make_(std::move(make)) {}
+    const T& operator()() {
+        if (!made_) made_.emplace(make_());
+        return *made_;
+    }
+
+  private:
+    std::function<T()> make_;
+    std::optional<T> made_;
+};
+
 /// An engine under the name that tables show.
 struct NamedEngine {
     std::string name;
@@ -34,8 +52,6 @@ NamedEngine canonical_pool();
 /// The pool of a rung of the ladder (wavefront/ladder.h) for so many threads. A name that is none is a bug.
 wavefront::PoolSettings rung_settings(const std::string& rung, int threads);
 NamedEngine pool_engine(std::string name, const wavefront::PoolSettings& pool);
-/// All rungs of the ladder for so many threads, without the two per-pixel engines.
-std::vector<NamedEngine> ladder_engines(int threads);
 
 /// A way of handing out the image, by the texts that users write.
 struct LoopWay {
@@ -63,21 +79,32 @@ void check_threads(int given, int asked);
 /// One render. What fixes its threads is checked.
 Measured measure(const Engine& engine, const StudyScene& scene, const RenderSettings& settings);
 
-/// What fixes the image: cases with the same text must have the same hash.
-std::string image_of(const StudyScene& scene, const RenderSettings& settings);
+/// One render: by whom, of what, and how.
+struct Render {
+    NamedEngine engine;
+    std::shared_ptr<const StudyScene> scene;
+    RenderSettings settings;
+};
+inline Measured measure(const Render& render) {
+    return measure(*render.engine.engine, *render.scene, render.settings);
+}
 
 /// The columns of a render, and `more` behind them: engine, threads, schedule and grain (of engines that loop over the
 /// image), width, seconds, mpaths_per_s, load_max_over_mean, waiting, hash.
 std::vector<Column> render_columns(const std::vector<Column>& more);
-Cells render_cells(const NamedEngine& engine, const StudyScene& scene, const RenderSettings& settings,
-                   const Measured& measured);
+Cells render_cells(const Render& render, const Measured& measured);
 
 /// The schedule and grain of an engine that loops over the image; nothing of others.
 Cells loop_cells(bool loops_over_image, const RenderSettings& settings);
 
-/// A case of one row: render_cells() and `extra`.
-Case render_case(std::string id, const NamedEngine& engine, const std::shared_ptr<const StudyScene>& scene,
-                 const RenderSettings& settings, int repeats, const Cells& extra = {});
+/// A case of one render, whose rows are made by rows(render).
+Case case_of(std::string id, const Render& render, int repeats,
+             const std::function<std::vector<Cells>(const Render& render)>& rows);
+/// Cells of a row that stand behind those of every render: the same for all repeats, or taken from what a render did.
+using MoreCells = std::function<Cells(const RenderReport& report)>;
+/// A case of one row: render_cells() and `more`.
+Case render_case(std::string id, const Render& render, int repeats, const MoreCells& more);
+Case render_case(std::string id, const Render& render, int repeats, const Cells& more);
 
 /// 1, 2, 4, ... up to `most`, and `most` itself.
 std::vector<int> thread_counts(int most);

@@ -75,39 +75,22 @@ std::vector<GroupedWay> all_ways() {
     return ways;
 }
 
-/// The costs of the study's paths, their model, and OpenMP's costs, found out when they are first asked for.
-class Work {
-  public:
-    Work(std::shared_ptr<const StudyScene> scene, const RenderSettings& settings, int repeats)
-        : scene_(std::move(scene)), settings_(settings), repeats_(repeats) {}
-    const PathCosts& costs() {
-        if (costs_.first.empty()) costs_ = record_costs(*scene_, settings_);
-        return costs_;
-    }
-    const CostFit& fit() {
-        if (fit_.seconds == 0) fit_ = fit_costs(*scene_, settings_, costs(), repeats_);
-        return fit_;
-    }
-    /// Of the default pool: the model in proportion.
-    const CostModel& pool_model() {
-        if (pool_model_.segment_s == 0 && pool_model_.test_s == 1)
-            pool_model_ =
-                scaled_to(*fused_pool().engine, *scene_, settings_, costs(), fit().model, std::min(repeats_, 3));
-        return pool_model_;
-    }
-    const OpenMpCosts& openmp() {
-        if (openmp_.threads.empty()) openmp_ = measure_openmp_costs(core_count());
-        return openmp_;
-    }
+/// The costs of the study's paths, their model, and OpenMP's costs.
+struct Work {
+    Work(const std::shared_ptr<const StudyScene>& scene, const RenderSettings& settings, int repeats)
+        : costs([=] { return record_costs(*scene, settings); }),
+          fit([=, this] { return fit_costs(*scene, settings, costs(), repeats); }),
+          pool_model([=, this] {
+              return scaled_to(*fused_pool().engine, *scene, settings, costs(), fit().model, std::min(repeats, 3));
+          }),
+          openmp([] { return measure_openmp_costs(core_count()); }) {}
+    Work(const Work&) = delete;  // its members ask each other
+    Work& operator=(const Work&) = delete;
 
-  private:
-    std::shared_ptr<const StudyScene> scene_;
-    RenderSettings settings_;
-    int repeats_;
-    PathCosts costs_;
-    CostFit fit_;
-    CostModel pool_model_;
-    OpenMpCosts openmp_;
+    Lazy<PathCosts> costs;
+    Lazy<CostFit> fit;
+    Lazy<CostModel> pool_model;  ///< of the default pool: the model in proportion
+    Lazy<OpenMpCosts> openmp;
 };
 
 std::vector<Cells> replay_all(Work& work, const StudyScene& scene, const RenderSettings& settings, int most,
@@ -171,24 +154,23 @@ std::vector<Cells> replay_all(Work& work, const StudyScene& scene, const RenderS
 
 /// One thread and more; beside them, how fast each thread is when all do the same; and what a replay with threads
 /// of these speeds makes of it.
-std::vector<Cells> run_real(Work& work, const StudyScene& scene, RenderSettings settings, const Engine& engine,
-                            const ReplayWay& way, int threads) {
+std::vector<Cells> run_real(Work& work, Render render, const ReplayWay& way, int threads) {
     const bool is_pool = way.kind == ReplayWay::Kind::ThreadPools;
     const PreparedWay prepared = prepare(way, work.costs(), is_pool ? work.pool_model() : work.fit().model);
-    const double alone = equal_work_seconds(scene, settings, 1)[0];
+    const double alone = equal_work_seconds(*render.scene, render.settings, 1)[0];
     const double one = prepared.replay(1, work.openmp().at(1), {}).makespan;
 
     std::vector<Cells> rows;
     for (const int n : {1, threads}) {
         if (n == 1 && !rows.empty()) break;  // there is one core only
-        std::vector<double> speeds = equal_work_seconds(scene, settings, n);
+        std::vector<double> speeds = equal_work_seconds(*render.scene, render.settings, n);
         for (double& speed : speeds) speed = alone / speed;
         const Replayed replayed = prepared.replay(n, work.openmp().at(n), speeds);
         std::vector<double> busy = replayed.work;
         for (std::size_t i = 0; i < busy.size(); ++i) busy[i] /= speeds[i];
 
-        settings.threads = n;
-        const Measured measured = measure(engine, scene, settings);
+        render.settings.threads = n;
+        const Measured measured = measure(render);
         const RenderReport& report = measured.report;
         const std::vector<double> processor = by_thread(report, &ThreadReport::processor_s);
         rows.push_back({{"kind", "real"},
@@ -217,8 +199,8 @@ std::vector<Case> replay_cases(const StudyOptions& options) {
     cases.push_back(
         {"replay", "", 1, [=] { return replay_all(*work, *scene, plan.settings, plan.most_threads, plan.repeats); }});
     const auto add_real = [&](const NamedEngine& engine, const ReplayWay& way, const RenderSettings& of_way) {
-        cases.push_back({fmt::format("real, {}", way.name), image_of(*scene, settings), plan.repeats,
-                         [=] { return run_real(*work, *scene, of_way, *engine.engine, way, real); }});
+        cases.push_back(case_of(fmt::format("real, {}", way.name), {engine, scene, of_way}, plan.repeats,
+                                [=](const Render& render) { return run_real(*work, render, way, real); }));
     };
     for (const LoopWay& way : kRealWays) add_real(recursive_engine(), loop_way(way), with_way(settings, way));
     add_real(fused_pool(), default_pool_way(), settings);

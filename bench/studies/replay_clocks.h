@@ -1,4 +1,4 @@
-/// What replays are made of: what hands out the iterations of a loop, and which thread comes next.
+/// What replays are made of: what hands out the iterations of a loop, which thread comes next, and the loop over items.
 #pragma once
 
 #include <algorithm>
@@ -76,11 +76,12 @@ class Dispenser {
     std::int64_t batch_size_ = 0;
 };
 
-/// Threads by the time at which they want their next chunk. Of threads that come at once, `first` is the first.
+/// Threads by the time at which they want their next chunk. Of threads that come at once, the lower rank is the first.
 class Clocks {
   public:
+    /// All at time 0, from thread `first` on.
     Clocks(int threads, int first) {
-        for (int i = 0; i < threads; ++i) queue_.emplace(0.0, i, (first + i) % threads);
+        for (int i = 0; i < threads; ++i) put(0, i, (first + i) % threads);
     }
     [[nodiscard]] bool is_empty() const { return queue_.empty(); }
     std::tuple<double, int, int> take() {
@@ -104,6 +105,35 @@ inline std::vector<std::int32_t> order_of(std::span<const double> items, const R
             return items[static_cast<std::size_t>(a)] > items[static_cast<std::size_t>(b)];
         });
     return order;
+}
+
+/// A loop over the items of `order`: work(thread, item) is what an item takes, finish(thread) what a thread still has
+/// to do once there are no more. Of threads that come at once, `first` is the first.
+template <class Work, class Finish>
+Replayed replay_items(const std::vector<std::int32_t>& order, const ReplaySchedule& schedule, int threads,
+                      const ReplayCosts& costs, std::span<const double> speeds, int first, Work work, Finish finish) {
+    Dispenser dispenser(static_cast<std::int64_t>(order.size()), schedule, threads);
+    Replayed result{std::vector<double>(static_cast<std::size_t>(threads)), std::vector<std::int32_t>(order.size()), 0};
+    double start = 0;  // of the latest chunk: no thread is served before it
+    for (Clocks clocks(threads, first); !clocks.is_empty();) {
+        const auto [asked, rank, thread] = clocks.take();
+        const Chunk chunk = dispenser.next(thread);
+        const bool is_last = chunk.begin == chunk.end;
+        const ReplayCosts extra = dispenser.is_fetching() && !is_last ? costs : ReplayCosts{};
+        start = std::max(asked, start) + extra.serve;
+        double done = is_last ? finish(thread) : 0;
+        for (std::int64_t i = chunk.begin; i < chunk.end; ++i) {
+            const auto item = static_cast<std::size_t>(order[static_cast<std::size_t>(i)]);
+            done += work(thread, item);
+            result.owner[item] = thread;
+        }
+        result.work[static_cast<std::size_t>(thread)] += done;
+        const double speed = speeds.empty() ? 1 : speeds[static_cast<std::size_t>(thread)];
+        const double end = start + done / speed + extra.fetch;
+        result.makespan = std::max(result.makespan, end);
+        if (!is_last) clocks.put(end, rank, thread);
+    }
+    return result;
 }
 
 }  // namespace raypool::studies

@@ -11,28 +11,9 @@ namespace {
 
 Replayed replay_from(std::span<const double> items, const ReplaySchedule& schedule, int threads,
                      const ReplayCosts& costs, int first, std::span<const double> speeds = {}) {
-    const std::vector<std::int32_t> order = order_of(items, schedule);
-    Dispenser dispenser(static_cast<std::int64_t>(items.size()), schedule, threads);
-    Replayed result{std::vector<double>(static_cast<std::size_t>(threads)), std::vector<std::int32_t>(items.size()), 0};
-    double start = 0;  // of the latest chunk: no thread is served before it
-    for (Clocks clocks(threads, first); !clocks.is_empty();) {
-        const auto [asked, rank, thread] = clocks.take();
-        const Chunk chunk = dispenser.next(thread);
-        if (chunk.begin == chunk.end) continue;
-        start = std::max(asked, start) + (dispenser.is_fetching() ? costs.serve : 0);
-        double work = 0;
-        for (std::int64_t i = chunk.begin; i < chunk.end; ++i) {
-            const auto item = static_cast<std::size_t>(order[static_cast<std::size_t>(i)]);
-            work += items[item];
-            result.owner[item] = thread;
-        }
-        result.work[static_cast<std::size_t>(thread)] += work;
-        const double speed = speeds.empty() ? 1 : speeds[static_cast<std::size_t>(thread)];
-        const double end = start + work / speed + (dispenser.is_fetching() ? costs.fetch : 0);
-        result.makespan = std::max(result.makespan, end);
-        clocks.put(end, rank, thread);
-    }
-    return result;
+    return replay_items(
+        order_of(items, schedule), schedule, threads, costs, speeds, first,
+        [&](int, std::size_t item) { return items[item]; }, [](int) { return 0.0; });
 }
 
 }  // namespace

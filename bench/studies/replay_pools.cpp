@@ -75,30 +75,14 @@ std::vector<double> item_costs(const SegmentCosts& segments, const PoolItems& it
 
 Replayed replay_thread_pools(const SegmentCosts& segments, const PoolItems& items, const ReplaySchedule& schedule,
                              int threads, const ReplayCosts& costs, std::span<const double> speeds) {
-    const std::size_t item_count = items.most_held.size();
-    const std::vector<std::int32_t> order = order_of(item_costs(segments, items), schedule);
-
-    Dispenser dispenser(static_cast<std::int64_t>(item_count), schedule, threads);
     std::vector<PathPool> pools(static_cast<std::size_t>(threads), PathPool(segments));
-    Replayed result{std::vector<double>(pools.size()), std::vector<std::int32_t>(item_count), 0};
-    for (Clocks clocks(threads, 0); !clocks.is_empty();) {
-        const auto [start, rank, thread] = clocks.take();
-        PathPool& pool = pools[static_cast<std::size_t>(thread)];
-        const Chunk chunk = dispenser.next(thread);
-        const bool is_last = chunk.begin == chunk.end;
-        double work = is_last ? pool.drain() : 0;
-        for (std::int64_t i = chunk.begin; i < chunk.end; ++i) {
-            const auto item = static_cast<std::size_t>(order[static_cast<std::size_t>(i)]);
-            work += pool.add(items.first_path[item], items.first_path[item + 1], items.most_held[item]);
-            result.owner[item] = thread;
-        }
-        result.work[static_cast<std::size_t>(thread)] += work;
-        const double speed = speeds.empty() ? 1 : speeds[static_cast<std::size_t>(thread)];
-        const double end = start + work / speed + (dispenser.is_fetching() && !is_last ? costs.fetch : 0);
-        result.makespan = std::max(result.makespan, end);
-        if (!is_last) clocks.put(end, rank, thread);
-    }
-    return result;
+    const auto add = [&](int thread, std::size_t item) {
+        return pools[static_cast<std::size_t>(thread)].add(items.first_path[item], items.first_path[item + 1],
+                                                           items.most_held[item]);
+    };
+    const auto drain = [&](int thread) { return pools[static_cast<std::size_t>(thread)].drain(); };
+    return replay_items(order_of(item_costs(segments, items), schedule), schedule, threads, costs, speeds, 0, add,
+                        drain);
 }
 
 Replayed replay_shared_pool(const SegmentCosts& segments, std::size_t capacity, std::size_t batch, int threads,

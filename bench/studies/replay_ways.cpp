@@ -13,18 +13,6 @@ namespace {
 using Kind = ReplayWay::Kind;
 using Speeds = std::span<const double>;
 
-/// The paths of a loop over items, in the order in which the items take them.
-struct LoopWork {
-    std::vector<std::uint32_t> first;  ///< segment of each path, and the end
-    std::vector<float> cost;           ///< of each segment
-    std::function<PoolItems(int threads)> items;
-
-    [[nodiscard]] SegmentCosts segments() const { return {first, cost}; }
-    [[nodiscard]] std::vector<double> item_costs(int threads) const {
-        return studies::item_costs(segments(), items(threads));
-    }
-};
-
 /// Of all paths, pixel by pixel, for so many threads.
 PoolItems balanced_items(std::int64_t pixels, std::int64_t samples, std::size_t capacity, int threads) {
     const BalancedItems balanced(pixels, samples, threads);
@@ -36,30 +24,24 @@ PoolItems balanced_items(std::int64_t pixels, std::int64_t samples, std::size_t 
     return items;
 }
 
-LoopWork loop_work(const ReplayWay& way, const PathCosts& costs, const CostModel& model, std::size_t capacity) {
-    if (way.schedule.kind == ReplaySchedule::Kind::Balanced)
-        return {costs.first, costs.segment_costs(model),
-                [pixels = costs.width * costs.height, samples = costs.samples, capacity](int threads) {
-                    return balanced_items(pixels, samples, capacity, threads);
-                }};
-    ItemOrder order = in_order(costs, way.grain, model, capacity);
-    return {std::move(order.first), std::move(order.cost), [items = std::move(order.items)](int) { return items; }};
-}
-
 }  // namespace
 
 PreparedWay prepare(const ReplayWay& way, const PathCosts& costs, const CostModel& model) {
     const ReplaySchedule schedule = way.schedule;
     const std::size_t capacity = way.capacity != 0 ? way.capacity : costs.first.size();
     if (way.kind == Kind::Loop || way.kind == Kind::ThreadPools) {
-        const auto work = std::make_shared<const LoopWork>(loop_work(way, costs, model, capacity));
+        const auto order = std::make_shared<const ItemOrder>(in_order(costs, way.grain, model, capacity));
+        const auto items = [=, pixels = costs.width * costs.height, samples = costs.samples](int threads) {
+            return schedule.kind == ReplaySchedule::Kind::Balanced ? balanced_items(pixels, samples, capacity, threads)
+                                                                   : order->items;
+        };
+        const auto item_seconds = [=](int threads) { return item_costs(order->segments(), items(threads)); };
         const bool has_pools = way.kind == Kind::ThreadPools;
         return {[=](int threads, const ReplayCosts& extra, Speeds speeds) {
-                    if (!has_pools) return replay(work->item_costs(threads), schedule, threads, extra, speeds);
-                    return replay_thread_pools(work->segments(), work->items(threads), schedule, threads, extra,
-                                               speeds);
+                    if (!has_pools) return replay(item_seconds(threads), schedule, threads, extra, speeds);
+                    return replay_thread_pools(order->segments(), items(threads), schedule, threads, extra, speeds);
                 },
-                [=](int threads) { return makespan_bound(work->item_costs(threads), threads); }};
+                [=](int threads) { return makespan_bound(item_seconds(threads), threads); }};
     }
     const auto segments = std::make_shared<const std::vector<float>>(costs.segment_costs(model));
     if (way.kind == Kind::Drained) {

@@ -23,7 +23,7 @@ struct ReplayWay {
     };
     std::string name;
     Kind kind = Kind::Loop;
-    Grain grain;               ///< of no meaning to balanced items
+    Grain grain;               ///< of a loop and of thread pools; pixels for balanced items
     ReplaySchedule schedule;   ///< of loops and of drained rounds
     std::size_t capacity = 0;  ///< of a pool; 0: all paths of the image
     std::size_t batch = 0;     ///< of a drained pool; 1 with a static schedule: equal contiguous shares

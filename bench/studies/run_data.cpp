@@ -20,8 +20,7 @@ namespace raypool::studies {
 RunData::RunData(const std::filesystem::path& folder, std::vector<Column> columns, const std::vector<Case>& cases)
     : path_(folder / "data.csv"), table_(std::move(columns)) {
     for (const Case& c : cases)
-        RAYPOOL_CHECK(plans_.try_emplace(c.id, Plan{c.image, c.repeats}).second,
-                      "the cases of a study have ids of their own");
+        RAYPOOL_CHECK(cases_.try_emplace(c.id, c).second, "the cases of a study have ids of their own");
 }
 
 RunData::~RunData() {
@@ -66,7 +65,7 @@ void RunData::add(const Case& c, int repeat, const std::vector<Cells>& added) {
 }
 
 void RunData::check_image(const Row& row) {
-    const std::string& image = plans_.at(row[0].get<std::string>()).image;
+    const std::string& image = cases_.at(row[0].get<std::string>()).image;
     if (image.empty() || row[table_.index("hash")].is_null()) return;
     const auto hash = row[table_.index("hash")].get<std::string>();
     const auto [expected, is_first] = hashes_.try_emplace(image, hash);
@@ -78,11 +77,12 @@ void RunData::check_image(const Row& row) {
 void RunData::check_loaded(const Row& row) {
     if (row[0].is_null() || row[1].is_null()) throw InputError("has no case or no repeat");
     const auto id = row[0].get<std::string>();
-    const auto plan = plans_.find(id);
-    if (plan == plans_.end()) throw InputError(fmt::format("case {} is none of this study", id));
+    const auto found = cases_.find(id);
+    if (found == cases_.end()) throw InputError(fmt::format("case {} is none of this study", id));
     const auto repeat = row[1].get<std::uint64_t>();
-    if (repeat >= static_cast<std::uint64_t>(plan->second.repeats))
-        throw InputError(fmt::format("repeat {} of {}, which has {}", repeat, id, plan->second.repeats));
+    const int repeats = found->second.repeats;
+    if (repeat >= static_cast<std::uint64_t>(repeats))
+        throw InputError(fmt::format("repeat {} of {}, which has {}", repeat, id, repeats));
     // Rows of one repeat follow each other.
     const std::vector<Row>& rows = table_.rows();
     const auto is_of_it = [&row](const Row& other) { return other[0] == row[0] && other[1] == row[1]; };

@@ -43,10 +43,6 @@ class RunData {
     void add(const Case& c, int repeat, const std::vector<Cells>& rows);
 
   private:
-    struct Plan {
-        std::string image;
-        int repeats;
-    };
     /// Throws WrongImage where the row's image is not that of others.
     void check_image(const Row& row);
     void check_loaded(const Row& row);
@@ -55,7 +51,7 @@ class RunData {
 
     std::filesystem::path path_;
     Table table_;
-    std::map<std::string, Plan> plans_;          ///< by case
+    std::map<std::string, Case> cases_;          ///< by id
     std::map<std::string, std::string> hashes_;  ///< of each image
     std::set<std::pair<std::string, int>> done_;
     int file_ = -1;

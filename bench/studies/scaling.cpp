@@ -16,41 +16,36 @@ namespace {
 
 constexpr int kMostScaledThreads = 64;
 
+/// An engine, and the replay of its schedule.
 struct ScalingWay {
-    enum class Engine : std::uint8_t { Recursive, SharedPool, FusedPool } engine;
+    NamedEngine engine;
     LoopWay loop;
+    ReplayWay replayed;
 };
-constexpr ScalingWay kScalingWays[] = {
-    {ScalingWay::Engine::Recursive, {"recursion, lines, static (the paper's basic)", "line", "static"}},
-    {ScalingWay::Engine::Recursive, {"recursion, lines, static,1", "line", "static,1"}},
-    {ScalingWay::Engine::Recursive, {"recursion, lines, dynamic", "line", "dynamic"}},
-    {ScalingWay::Engine::SharedPool, {"a pool for all threads, batches of 4096", "line", "dynamic"}},
-    {ScalingWay::Engine::FusedPool, {"a pool for each thread, balanced (default)", "pixel", "balanced"}},
-};
-
-NamedEngine engine_of(const ScalingWay& way) {
-    return way.engine == ScalingWay::Engine::Recursive    ? recursive_engine()
-           : way.engine == ScalingWay::Engine::SharedPool ? canonical_pool()
-                                                          : fused_pool();
+std::vector<ScalingWay> scaling_ways() {
+    std::vector<ScalingWay> ways;
+    for (const LoopWay& way : {LoopWay{"recursion, lines, static (the paper's basic)", "line", "static"},
+                               {"recursion, lines, static,1", "line", "static,1"},
+                               {"recursion, lines, dynamic", "line", "dynamic"}})
+        ways.push_back({recursive_engine(), way, loop_way(way)});
+    const LoopWay shared{"a pool for all threads, batches of 4096", "line", "dynamic"};
+    ReplayWay drained = loop_way(shared);
+    drained.kind = ReplayWay::Kind::Drained;
+    drained.capacity = static_cast<std::size_t>(wavefront::PoolSettings::kSharedCapacity);
+    drained.batch = static_cast<std::size_t>(wavefront::PoolSettings{}.batch);
+    ways.push_back({canonical_pool(), shared, drained});
+    const LoopWay own{"a pool for each thread, balanced (default)", "pixel", "balanced"};
+    ways.push_back({fused_pool(), own, thread_pool_way(own)});
+    return ways;
 }
 
-ReplayWay replay_of(const ScalingWay& way) {
-    if (way.engine == ScalingWay::Engine::FusedPool) return thread_pool_way(way.loop);
-    ReplayWay replayed = loop_way(way.loop);
-    if (way.engine == ScalingWay::Engine::Recursive) return replayed;
-    replayed.kind = ReplayWay::Kind::Drained;
-    replayed.capacity = static_cast<std::size_t>(wavefront::PoolSettings::kSharedCapacity);
-    replayed.batch = static_cast<std::size_t>(wavefront::PoolSettings{}.batch);
-    return replayed;
-}
-
-std::vector<Cells> measured_scaling(const StudyScene& scene, const RenderSettings& settings, const ScalingWay& way) {
-    const double loop = compute_loop_seconds(settings.threads, 0.02);
-    const Measured measured = measure(*engine_of(way).engine, scene, settings);
+std::vector<Cells> measured_scaling(const Render& render, const char* way) {
+    const double loop = compute_loop_seconds(render.settings.threads, 0.02);
+    const Measured measured = measure(render);
     return {Cells{{"source", "measured"},
-                  {"way", way.loop.name},
-                  {"width", scene.compiled.width},
-                  {"threads", settings.threads},
+                  {"way", way},
+                  {"width", render.scene->compiled.width},
+                  {"threads", render.settings.threads},
                   {"seconds", measured.report.seconds},
                   {"loop_seconds", loop},
                   {"hash", measured.hash}}};
@@ -61,11 +56,10 @@ std::vector<Cells> replayed_scaling(const StudyScene& scene, const RenderSetting
     const CostModel model = fit_costs(scene, settings, costs, 2).model;
     const OpenMpCosts openmp = measure_openmp_costs(most);
     std::vector<Cells> rows;
-    for (const ScalingWay& way : kScalingWays) {
-        const bool is_pool = way.engine != ScalingWay::Engine::Recursive;
-        const PreparedWay prepared =
-            prepare(replay_of(way), costs,
-                    is_pool ? scaled_to(*engine_of(way).engine, scene, settings, costs, model, 2) : model);
+    for (const ScalingWay& way : scaling_ways()) {
+        const bool is_pool = way.replayed.kind != ReplayWay::Kind::Loop;
+        const PreparedWay prepared = prepare(
+            way.replayed, costs, is_pool ? scaled_to(*way.engine.engine, scene, settings, costs, model, 2) : model);
         const double one = prepared.replay(1, openmp.at(1), {}).makespan;
         for (const int threads : thread_counts(most))
             rows.push_back(
@@ -90,13 +84,14 @@ std::vector<Case> scaling_cases(const StudyOptions& options) {
     for (const std::int64_t width : widths) {
         const auto scene = study_scene(options.scene, width);
         RenderSettings settings;
-        for (const ScalingWay& way : kScalingWays) {
+        for (const ScalingWay& way : scaling_ways()) {
             settings = with_way(plan.settings, way.loop);
             for (const int threads : thread_counts(std::min(core_count(), most))) {
                 settings.threads = threads;
-                cases.push_back({fmt::format("width {}, {} threads, {}", width, threads, way.loop.name),
-                                 image_of(*scene, settings), plan.repeats,
-                                 [=] { return measured_scaling(*scene, settings, way); }});
+                cases.push_back(
+                    case_of(fmt::format("width {}, {} threads, {}", width, threads, way.loop.name),
+                            {way.engine, scene, settings}, plan.repeats,
+                            [name = way.loop.name](const Render& render) { return measured_scaling(render, name); }));
             }
         }
         cases.push_back({fmt::format("width {}, replayed", width), "", 1,

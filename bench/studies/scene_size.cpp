@@ -1,15 +1,18 @@
 // From which size of scene on a pool beats recursion, and how large it must be: engine by capacity by shapes by depth.
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "bench/studies/cache_counts.h"
-#include "bench/studies/generated_scene.h"
+#include "bench/studies/process.h"
 #include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/statistics.h"
+#include "core/base/scratch_folder.h"
 #include "core/runtime/settings_text.h"
 #include "core/scene/scene_reader.h"
 #include "wavefront/capacity.h"
@@ -28,31 +31,43 @@ constexpr const char* kAutomatic = "automatic";
 constexpr const char* kCounted = "cache misses";
 constexpr const char* kLists = "lists";
 
-/// A generated scene that is made when it is first rendered: a study is planned more often than it is run.
-class SizedScene {
+/// What scenes/generate knows how to strew.
+constexpr const char* kSceneKinds[] = {"spheres", "quads", "cluster"};
+
+/// A scene of any number of shapes that scenes/generate wrote, which goes when this does. Needs python3; throws
+/// std::runtime_error where the script fails.
+class GeneratedScene {
   public:
-    SizedScene(std::string kind, std::int64_t shapes, std::int64_t width)
-        : kind_(std::move(kind)), shapes_(shapes), width_(width) {}
-    [[nodiscard]] const std::string& kind() const { return kind_; }
-    [[nodiscard]] std::int64_t shapes() const { return shapes_; }
-    [[nodiscard]] const StudyScene& get() {
-        if (!made_) {
-            Scene scene = GeneratedScene(kind_, shapes_).read();
-            set_width(scene, width_);
-            made_.emplace(StudyScene{scene.name, compile<float>(scene)});
-        }
-        return *made_;
+    GeneratedScene(const std::string& kind, std::int64_t shapes) : name_(fmt::format("{} {}", shapes, kind)) {
+        const std::string script = own_script(RAYPOOL_INSTALLED_SCENES "/generate", RAYPOOL_SOURCE_SCENES "/generate");
+        if (run_process({kPython, "-B", script, std::to_string(shapes), kind, "-o", path().string()}) != 0)
+            throw std::runtime_error(fmt::format("{} could not make {}", script, name_));
     }
-    [[nodiscard]] std::string image(const RenderSettings& settings) const {
-        return fmt::format("{} {}, {} wide, {} spp, depth {}, seed {}", shapes_, kind_, width_, settings.end_sample,
-                           settings.depth, settings.seed);
+    [[nodiscard]] std::filesystem::path path() const { return folder_ / "scene.json"; }
+    [[nodiscard]] Scene read() const {
+        Scene scene = read_scene(path());
+        scene.name = name_;
+        return scene;
     }
 
   private:
-    std::string kind_;
-    std::int64_t shapes_;
-    std::int64_t width_;
-    std::optional<StudyScene> made_;
+    std::string name_;
+    ScratchFolder folder_;
+};
+
+/// The same at a width, compiled.
+struct SizedScene {
+    std::string kind;
+    std::int64_t shapes;
+    std::int64_t width;
+    Lazy<std::shared_ptr<const StudyScene>> get;
+
+    SizedScene(const std::string& of_kind, std::int64_t of_shapes, std::int64_t wide)
+        : kind(of_kind), shapes(of_shapes), width(wide), get([=] {
+              Scene scene = GeneratedScene(of_kind, of_shapes).read();
+              set_width(scene, wide);
+              return std::make_shared<const StudyScene>(StudyScene{scene.name, compile<float>(scene)});
+          }) {}
 };
 
 /// An engine, by how large its pools are; recursion has none.
@@ -61,112 +76,105 @@ struct SizedWay {
     std::optional<PoolSettings> pool;
 };
 
-NamedEngine sized_engine(const SizedWay& way) {
-    return way.pool ? pool_engine("pool", *way.pool) : recursive_engine();
+/// What a case renders.
+struct SizedRender {
+    SizedWay way;
+    std::shared_ptr<SizedScene> scene;
+    RenderSettings settings;
+
+    [[nodiscard]] Render get() const {
+        return {way.pool ? pool_engine("pool", *way.pool) : recursive_engine(), scene->get(), settings};
+    }
+    /// What every row says; `way_text` begins with what was counted, if anything was.
+    [[nodiscard]] Cells cells(const std::string& way_text, const Measured& measured) const {
+        const RenderReport& report = measured.report;
+        return render_cells(get(), measured) +
+               Cells{{"kind", scene->kind},
+                     {"shapes", scene->shapes},
+                     {"depth", settings.depth},
+                     {"way", way_text},
+                     {"capacity", way.pool ? Value(wavefront::pool_report(report).pool_rays) : Value()},
+                     {"tree_bytes", wavefront::tree_bytes(scene->get()->compiled)},
+                     {"segments", report.segments()},
+                     {"ns_per_segment", ns_per_segment(report, settings.threads)}};
+    }
+    /// The row's time is not used: counting takes some.
+    [[nodiscard]] Cells miss_cells(const Measured& measured, const char* source, const Value& d1_read_misses,
+                                   const Value& ll_read_misses) const {
+        return cells(fmt::format("{}, {}", kCounted, way.name), measured) +
+               Cells{{"source", source}, {"d1_read_misses", d1_read_misses}, {"ll_read_misses", ll_read_misses}};
+    }
+};
+
+using Rows = std::vector<Cells>;
+
+Case sized_case(const std::string& what, const SizedRender& render, int repeats, Rows (*rows)(const SizedRender&)) {
+    const SizedScene& scene = *render.scene;
+    const RenderSettings& settings = render.settings;
+    return {fmt::format("{} {}, depth {}: {}", scene.shapes, scene.kind, settings.depth, what),
+            fmt::format("{} {}, {} wide, {} spp, depth {}, seed {}", scene.shapes, scene.kind, scene.width,
+                        settings.end_sample, settings.depth, settings.seed),
+            repeats, [=] { return rows(render); }};
 }
 
-Measured measure(const SizedWay& way, SizedScene& scene, const RenderSettings& settings) {
-    return measure(*sized_engine(way).engine, scene.get(), settings);
+Rows timed_rows(const SizedRender& render) {
+    return {render.cells(render.way.name, measure(render.get()))};
 }
 
-/// What every row says; `way_text` begins with what was counted, if anything was.
-Cells sized_cells(const std::string& way_text, const SizedWay& way, SizedScene& scene, const RenderSettings& settings,
-                  const Measured& measured) {
-    const RenderReport& report = measured.report;
-    return render_cells(sized_engine(way), scene.get(), settings, measured) +
-           Cells{{"kind", scene.kind()},
-                 {"shapes", scene.shapes()},
-                 {"depth", settings.depth},
-                 {"way", way_text},
-                 {"capacity", way.pool ? Value(wavefront::pool_report(report).pool_rays) : Value()},
-                 {"tree_bytes", wavefront::tree_bytes(scene.get().compiled)},
-                 {"segments", report.segments()},
-                 {"ns_per_segment", ns_per_segment(report, settings.threads)}};
-}
-/// The row's time is not used: counting takes some.
-Cells miss_cells(const SizedWay& way, SizedScene& scene, const RenderSettings& settings, const Measured& measured,
-                 const char* source, const Value& d1_read_misses, const Value& ll_read_misses) {
-    return sized_cells(fmt::format("{}, {}", kCounted, way.name), way, scene, settings, measured) +
-           Cells{{"source", source}, {"d1_read_misses", d1_read_misses}, {"ll_read_misses", ll_read_misses}};
-}
-
-std::string case_id(const SizedScene& scene, const RenderSettings& settings, const std::string& what) {
-    return fmt::format("{} {}, depth {}: {}", scene.shapes(), scene.kind(), settings.depth, what);
-}
-
-Case sized_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, const RenderSettings& settings,
-                int repeats) {
-    const auto run = [way, scene, settings]() -> std::vector<Cells> {
-        return {sized_cells(way.name, way, *scene, settings, measure(way, *scene, settings))};
-    };
-    return {case_id(*scene, settings, fmt::format("{}, {} threads", way.name, settings.threads)),
-            scene->image(settings), repeats, run};
-}
-
-Case hardware_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, const RenderSettings& settings) {
-    const auto run = [way, scene, settings]() -> std::vector<Cells> {
-        static_cast<void>(scene->get());  // made before anything is counted
-        Measured measured;
-        const auto found = count_by_hardware([&] { measured = measure(way, *scene, settings); });
-        const CacheCounts counts = found.value_or(CacheCounts{});
-        return {miss_cells(way, *scene, settings, measured, "hardware counters", or_null(counts.d1_read_misses),
-                           or_null(counts.ll_read_misses))};
-    };
-    return {case_id(*scene, settings, fmt::format("cache misses of {}", way.name)), scene->image(settings), 1, run};
+Rows hardware_rows(const SizedRender& render) {
+    const Render made = render.get();  // before anything is counted
+    Measured measured;
+    const auto found = count_by_hardware([&] { measured = measure(made); });
+    const CacheCounts counts = found.value_or(CacheCounts{});
+    return {render.miss_cells(measured, "hardware counters", or_null(counts.d1_read_misses),
+                              or_null(counts.ll_read_misses))};
 }
 
 /// Misses of the samples behind the first so many, so that what is done once for a scene is in neither figure. Small
 /// images: a simulated cache is a hundred times slower.
-Case cachegrind_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, const RenderSettings& settings) {
-    const auto run = [way, scene, settings]() -> std::vector<Cells> {
-        const StudyScene& made = scene->get();
-        const GeneratedScene file(scene->kind(), scene->shapes());
-        const auto count = [&](std::int64_t spp) {
-            std::vector<std::string> arguments{file.path().string(),
-                                               fmt::format("--width={}", made.compiled.width),
-                                               fmt::format("--spp={}", spp),
-                                               fmt::format("--depth={}", settings.depth),
-                                               fmt::format("--seed={}", settings.seed),
-                                               "--threads=1"};
-            arguments.emplace_back(way.pool ? "--engine=wavefront" : "--engine=recursive");
-            if (way.pool && way.pool->capacity > 0)
-                arguments.push_back(fmt::format("--pool-rays={}", way.pool->capacity));
-            return run_cachegrind(arguments);
-        };
-        // Where all fits into a cache, the few misses of two processes differ by chance.
-        const auto more = [](const std::optional<std::int64_t>& a, const std::optional<std::int64_t>& b) {
-            return std::max<std::int64_t>(*a - *b, 0);
-        };
-        const Cachegrind first = count(1);
-        const Cachegrind all = count(settings.end_sample);
-        Measured measured = measure(way, *scene, settings);
-        if (measured.hash != all.hash) throw std::runtime_error("the image under cachegrind is another one");
-        measured.report.threads.front().segments = all.segments - first.segments;
-        return {miss_cells(way, *scene, settings, measured, "cachegrind",
-                           more(all.all.d1_read_misses, first.all.d1_read_misses),
-                           more(all.all.ll_read_misses, first.all.ll_read_misses))};
+Rows cachegrind_rows(const SizedRender& render) {
+    const std::optional<PoolSettings>& pool = render.way.pool;
+    const GeneratedScene file(render.scene->kind, render.scene->shapes);
+    const auto count = [&](std::int64_t spp) {
+        std::vector<std::string> arguments{file.path().string(),
+                                           fmt::format("--width={}", render.scene->width),
+                                           fmt::format("--spp={}", spp),
+                                           fmt::format("--depth={}", render.settings.depth),
+                                           fmt::format("--seed={}", render.settings.seed),
+                                           "--threads=1",
+                                           pool ? "--engine=wavefront" : "--engine=recursive"};
+        if (pool && pool->capacity > 0) arguments.push_back(fmt::format("--pool-rays={}", pool->capacity));
+        return run_cachegrind(arguments);
     };
-    return {case_id(*scene, settings, fmt::format("cache misses of {}", way.name)), scene->image(settings), 1, run};
+    // Where all fits into a cache, the few misses of two processes differ by chance.
+    const auto more = [](const std::optional<std::int64_t>& a, const std::optional<std::int64_t>& b) {
+        return std::max<std::int64_t>(*a - *b, 0);
+    };
+    const Cachegrind first = count(1);
+    const Cachegrind all = count(render.settings.end_sample);
+    Measured measured = measure(render.get());
+    if (measured.hash != all.hash) throw std::runtime_error("the image under cachegrind is another one");
+    measured.report.threads.front().segments = all.segments - first.segments;
+    return {render.miss_cells(measured, "cachegrind", more(all.all.d1_read_misses, first.all.d1_read_misses),
+                              more(all.all.ll_read_misses, first.all.ll_read_misses))};
 }
 
 /// The lists of a pool, a row for each level of the trees.
-Case list_case(const SizedWay& way, const std::shared_ptr<SizedScene>& scene, RenderSettings settings) {
-    settings.count_work = true;
-    const auto run = [way, scene, settings]() -> std::vector<Cells> {
-        const Measured measured = measure(way, *scene, settings);
-        std::vector<Cells> rows;
-        for (const wavefront::ListLevel& level : wavefront::pool_report(measured.report).lists) {
-            if (level.lists == 0) break;
-            rows.push_back(sized_cells(fmt::format("{}, {}", kLists, way.name), way, *scene, settings, measured) +
-                           Cells{{"level", rows.size()},
-                                 {"lists", level.lists},
-                                 {"list_rays", level.rays},
-                                 {"single_rays", level.single_rays},
-                                 {"lanes", level.lanes}});
-        }
-        return rows;
-    };
-    return {case_id(*scene, settings, fmt::format("lists of {}", way.name)), scene->image(settings), 1, run};
+Rows list_rows(const SizedRender& render) {
+    SizedRender counted = render;
+    counted.settings.count_work = true;
+    const Measured measured = measure(counted.get());
+    Rows rows;
+    for (const wavefront::ListLevel& level : wavefront::pool_report(measured.report).lists) {
+        if (level.lists == 0) break;
+        rows.push_back(render.cells(fmt::format("{}, {}", kLists, render.way.name), measured) +
+                       Cells{{"level", rows.size()},
+                             {"lists", level.lists},
+                             {"list_rays", level.rays},
+                             {"single_rays", level.single_rays},
+                             {"lanes", level.lanes}});
+    }
+    return rows;
 }
 
 std::vector<std::int64_t> sizes(bool is_quick) {
@@ -208,20 +216,26 @@ std::vector<Case> scene_size_cases(const StudyOptions& options) {
                 settings.depth = static_cast<std::int32_t>(depth);
                 for (const int threads : one_and_all(plan.most_threads)) {
                     settings.threads = threads;
-                    for (const SizedWay& way : ways) cases.push_back(sized_case(way, scene, settings, plan.repeats));
+                    for (const SizedWay& way : ways)
+                        cases.push_back(sized_case(fmt::format("{}, {} threads", way.name, threads),
+                                                   {way, scene, settings}, plan.repeats, timed_rows));
                 }
                 settings.threads = 1;
                 for (const SizedWay& way : ways) {
-                    if (has_counters) cases.push_back(hardware_case(way, scene, settings));
+                    const SizedRender render{way, scene, settings};
+                    if (has_counters)
+                        cases.push_back(sized_case("cache misses of " + way.name, render, 1, hardware_rows));
                     // Camera rays go down in beams, and are in no list.
-                    if (way.pool && depth > 1) cases.push_back(list_case(way, scene, settings));
+                    if (way.pool && depth > 1)
+                        cases.push_back(sized_case("lists of " + way.name, render, 1, list_rows));
                 }
             }
             if (!has_cachegrind || shapes > kMostSimulated) continue;
             const auto small = std::make_shared<SizedScene>(kind, shapes, std::min(width, kSimulatedWidth));
             RenderSettings few = settings;
             few.end_sample = kSimulatedSpp;
-            for (const SizedWay& way : {ways[0], ways[1]}) cases.push_back(cachegrind_case(way, small, few));
+            for (const SizedWay& way : {ways[0], ways[1]})
+                cases.push_back(sized_case("cache misses of " + way.name, {way, small, few}, 1, cachegrind_rows));
         }
     }
     return cases;

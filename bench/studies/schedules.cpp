@@ -30,8 +30,9 @@ std::vector<Case> cases(const StudyOptions& options) {
         for (const int threads : thread_counts(plan.most_threads)) {
             plan.settings.threads = threads;
             for (const LoopWay& way : kWays)
-                cases.push_back(render_case(fmt::format("{}, {} threads, {}", engine.name, threads, way.name), engine,
-                                            scene, with_way(plan.settings, way), plan.repeats, {{"way", way.name}}));
+                cases.push_back(render_case(fmt::format("{}, {} threads, {}", engine.name, threads, way.name),
+                                            {engine, scene, with_way(plan.settings, way)}, plan.repeats,
+                                            Cells{{"way", way.name}}));
         }
     }
     return cases;

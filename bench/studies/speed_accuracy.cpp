@@ -121,16 +121,6 @@ std::vector<SharedScene> scenes_of(const StudyOptions& options) {
     return scenes;
 }
 
-/// A part of the reference, so that an interruption loses little.
-Case reference_case(const SharedScene& scene, const std::shared_ptr<accuracy::Reference>& reference,
-                    const AccuracyPlan& plan, std::int64_t range, std::int64_t number) {
-    const auto run = [=]() -> std::vector<Cells> {
-        reference->extend(range);
-        return {start_of_row(kReference, *scene, accuracy::kTrusted, plan.all_threads, range)};
-    };
-    return {fmt::format("reference: {}, part {}", scene->description.name, number), "", 1, run};
-}
-
 /// One row for each configuration that makes another image: its expectation against the trusted one, by pairs of images
 /// made from the same random numbers, whose common noise goes away in their difference.
 Case bias_case(const SharedScene& scene, const std::vector<Configuration>& all, const AccuracyPlan& plan) {
@@ -187,9 +177,14 @@ std::vector<Case> accuracy_cases(const StudyOptions& options) {
     std::vector<std::function<Case(std::uint64_t)>> by_seed;
     for (const SharedScene& scene : scenes_of(options)) {
         const auto reference = std::make_shared<accuracy::Reference>(scene, plan.half_spp(), folder, plan.all_threads);
+        // In parts, so that an interruption loses little.
         const std::int64_t range = std::max<std::int64_t>(1, plan.half_spp() / 16);
         for (std::int64_t part = 0; part < 2 * ((plan.half_spp() + range - 1) / range); ++part)
-            cases.push_back(reference_case(scene, reference, plan, range, part));
+            cases.push_back({fmt::format("reference: {}, part {}", scene->description.name, part), "", 1, [=] {
+                                 reference->extend(range);
+                                 return std::vector<Cells>{
+                                     start_of_row(kReference, *scene, accuracy::kTrusted, plan.all_threads, range)};
+                             }});
 
         const std::vector<Configuration> all = configurations(options.depth, scene->in_float.features.dielectric);
         cases.push_back(bias_case(scene, all, plan));

@@ -25,15 +25,8 @@ constexpr const char* kCost = "cost";
 constexpr const char* kImage = "image";
 
 const char* to_string(MethodKind kind) {
-    switch (kind) {
-        case MethodKind::Naive:
-            return "naive";
-        case MethodKind::Alternative:
-            return "other";
-        case MethodKind::Ours:
-            break;
-    }
-    return "ours";
+    constexpr const char* kNames[] = {"naive", "other", "ours"};
+    return kNames[static_cast<std::size_t>(kind)];
 }
 
 Cells method_cells(const char* kind, const stability::Case& one, const Method& method) {

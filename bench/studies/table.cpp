@@ -1,7 +1,6 @@
 #include "bench/studies/table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -39,40 +38,28 @@ std::optional<std::vector<std::string>> next_line(std::string_view& text) {
     bool is_quoted = false;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
-        if (is_quoted) {
-            if (c != '"') {
-                cells.back() += c;
-            } else if (i + 1 < text.size() && text[i + 1] == '"') {
-                cells.back() += text[++i];
-            } else {
-                is_quoted = false;
-            }
-        } else if (c == '"') {
-            is_quoted = true;
+        if (c == '"') {
+            if (!is_quoted && i > 0 && text[i - 1] == '"') cells.back() += c;  // two within quotes are one
+            is_quoted = !is_quoted;
+        } else if (is_quoted || (c != ',' && c != '\n')) {
+            cells.back() += c;
         } else if (c == ',') {
             cells.emplace_back();
-        } else if (c == '\n') {
+        } else {
             text.remove_prefix(i + 1);
             return cells;
-        } else {
-            cells.back() += c;
         }
     }
     return std::nullopt;
 }
 
-template <class T>
-std::optional<Value> number(const std::string& text) {
-    T value;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return Value(value);
-}
-
+/// The value of a cell in such a column; nothing where it is none.
 std::optional<Value> parse(const std::string& text, ColumnType type) {
     if (text.empty()) return Value(nullptr);
     if (type == ColumnType::Text) return Value(text);
-    return type == ColumnType::Count ? number<std::uint64_t>(text) : number<double>(text);
+    const Value value = Value::parse(text, nullptr, false);
+    const bool is_right = type == ColumnType::Count ? value.is_number_unsigned() : value.is_number();
+    return is_right ? std::optional(value) : std::nullopt;
 }
 
 /// Adds a line that has been read to the table.
