@@ -38,7 +38,8 @@ class Compiler {
         add_textures();
         add_surfaces();
         add_blocks(scene_, coincidence_, out_);
-        if (features_.lights) out_.lights = light_table<Scalar>(scene_);
+        if (features_.lights) out_.lights = light_table<Scalar>(scene_, coincidence_.is_hidden);
+        features_.lights = !out_.lights.rows.empty();
         SceneTables<Scalar>::for_each_table(out_, [](auto& table) { table.shrink_to_fit(); });
 
         CompiledScene<Scalar> compiled(std::move(out_));

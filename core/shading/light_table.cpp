@@ -44,7 +44,7 @@ std::vector<AliasEntry> alias_table(std::vector<double> shares) {
 }  // namespace
 
 template <class Scalar>
-LightTable<Scalar> light_table(const Scene& scene) {
+LightTable<Scalar> light_table(const Scene& scene, const std::vector<bool>& is_hidden) {
     using Row = LightRow<Scalar>;
     LightTable<Scalar> table;
     std::vector<double> powers;
@@ -62,7 +62,7 @@ LightTable<Scalar> light_table(const Scene& scene) {
     for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
         const Sphere& sphere = scene.spheres[i];
         const double power = emitted_power(scene, sphere);
-        if (power == 0) continue;
+        if (power == 0 || is_hidden[i]) continue;
         Row& row = add(i, power, 1);
         set(row, Row::kPoint, sphere.center0);
         set(row, Row::kEdgeU, sphere.center1 - sphere.center0);
@@ -71,8 +71,9 @@ LightTable<Scalar> light_table(const Scene& scene) {
     for (std::size_t i = 0; i < scene.quads.size(); ++i) {
         const Quad& quad = scene.quads[i];
         const double power = emitted_power(scene, quad);
-        if (power == 0) continue;
-        Row& row = add(scene.spheres.size() + i, power, quad.edge_u.cross(quad.edge_v).norm());
+        const std::size_t id = scene.spheres.size() + i;
+        if (power == 0 || is_hidden[id]) continue;
+        Row& row = add(id, power, quad.edge_u.cross(quad.edge_v).norm());
         set(row, Row::kPoint, quad.corner);
         set(row, Row::kEdgeU, quad.edge_u);
         set(row, Row::kEdgeV, quad.edge_v);
@@ -93,7 +94,7 @@ LightTable<Scalar> light_table(const Scene& scene) {
     return table;
 }
 
-template LightTable<float> light_table(const Scene&);
-template LightTable<double> light_table(const Scene&);
+template LightTable<float> light_table(const Scene&, const std::vector<bool>&);
+template LightTable<double> light_table(const Scene&, const std::vector<bool>&);
 
 }  // namespace raypool

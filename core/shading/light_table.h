@@ -34,11 +34,12 @@ struct LightTable {
     std::vector<Scalar> weights;
 };
 
-/// Ids are spheres', then quads', then planes', as everywhere. Planes have no end and are no lights.
+/// Ids are spheres', then quads', then planes', as everywhere. Planes have no end and are no lights, and what is hidden
+/// by coincidence (`is_hidden`, by id) is none.
 template <class Scalar>
-LightTable<Scalar> light_table(const Scene& scene);
+LightTable<Scalar> light_table(const Scene& scene, const std::vector<bool>& is_hidden);
 
-extern template LightTable<float> light_table(const Scene&);
-extern template LightTable<double> light_table(const Scene&);
+extern template LightTable<float> light_table(const Scene&, const std::vector<bool>&);
+extern template LightTable<double> light_table(const Scene&, const std::vector<bool>&);
 
 }  // namespace raypool

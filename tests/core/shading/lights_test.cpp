@@ -40,7 +40,7 @@ TEST(LightTable, GivesEveryLightItsShareOfThePower) {
     const double sum = std::accumulate(power.begin(), power.end(), 0.0);
 
     using Row = LightRow<double>;
-    const LightTable<double> table = light_table<double>(scene);
+    const LightTable<double> table = light_table<double>(scene, std::vector<bool>(power.size()));
     const auto primitive = [&](std::size_t i) {
         return static_cast<std::size_t>(bits_of<double>(table.rows[i].value[Row::kPrimitive]));
     };
@@ -71,6 +71,20 @@ TEST(LightTable, IsEmptyWhereNothingShines) {
     scene.plane({0, 0, 0}, {0, 1, 0}, scene.emitter(1));
     EXPECT_FALSE(compile<float>(scene).features.lights);
     EXPECT_TRUE(compile<float>(scene).lights.empty());
+}
+
+/// Of two lamps that are one surface the first listed is there.
+TEST(LightTable, HasNothingThatIsHidden) {
+    TestScene scene(1, 1, Vector3d::Zero());
+    const std::int32_t lamp = scene.emitter(1);
+    for (int i = 0; i < 2; ++i) scene.sphere({0, 0, 0}, 1, lamp);
+    for (int i = 0; i < 2; ++i) scene.quad({3, 0, 0}, {1, 0, 0}, {0, 1, 0}, lamp);
+    const CompiledScene<float> compiled = compile<float>(scene);
+    ASSERT_EQ(compiled.lights.size(), 2U);
+    EXPECT_GT(compiled.light_weights[0], 0);
+    EXPECT_EQ(compiled.light_weights[1], 0);
+    EXPECT_GT(compiled.light_weights[2], 0);
+    EXPECT_EQ(compiled.light_weights[3], 0);
 }
 
 /// Of a triangle, seen from the origin (Van Oosterom and Strackee, 1983).
