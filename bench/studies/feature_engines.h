@@ -1,6 +1,6 @@
 /// Engines whose kernels are compiled for a set of features of choice, whatever the scene needs: study `features`.
 ///
-/// The engines of the project are compiled for three sets (kCompiledFeatures); here are those with one feature each.
+/// The engines of the project are compiled for four sets (kCompiledFeatures); here are those with one feature each.
 /// They make the image of any scene that lacks what they lack.
 #pragma once
 

@@ -96,14 +96,14 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, EmbreeEngineOfScene, testing::ValuesIn(scene_n
 
 /// Finds each hit by our trees and by Embree, and counts those that differ.
 struct BothSearches : peers::EmbreeSearch {
-    std::int64_t count = 0;
+    std::int64_t all = 0;
     std::int64_t differing = 0;
 };
 
 template <Features features>
 Hit<float> closest_hit(const SceneView<float>& scene, const Ray<float>& ray, std::int32_t leaving_id,
                        BothSearches& search) {
-    ++search.count;
+    ++search.all;
     NoTestCount nothing;
     const Hit<float> ours = raypool::closest_hit<features>(scene, ray, leaving_id, nothing);
     const Hit<float> theirs = peers::closest_hit<features>(scene, ray, leaving_id, search);
@@ -126,7 +126,7 @@ HitCount count_hits(const Scene& described, std::int64_t spp) {
     for (std::int64_t y = 0; y < scene.height; ++y)
         for (std::int64_t x = 0; x < scene.width; ++x)
             for (std::int64_t s = 0; s < spp; ++s) tracer.sample<recursive::Form::Iterative>(x, y, s);
-    EXPECT_EQ(tracer.work().count, tracer.segments()) << "the tracer finds hits in another way";
+    EXPECT_EQ(tracer.work().all, tracer.segments()) << "the tracer finds hits in another way";
     return {tracer.work().differing, tracer.segments()};
 }
 

@@ -98,6 +98,7 @@ TEST(RayRecord, HasTheSizeThatTheSceneAnnouncesAndNeverMoreThan64Bytes) {
     const Features paper{
         .motion = true, .defocus = true, .metal = true, .fuzz = true, .dielectric = true, .checker = true};
     EXPECT_EQ(ray_record_bytes(paper, sizeof(float)), 56U);
+    EXPECT_EQ(ray_record_bytes({.lights = true}, sizeof(float)), 56U);
 }
 
 template <class Setting>

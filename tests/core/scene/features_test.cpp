@@ -117,7 +117,7 @@ TEST(RayRecord, GrowsOnlyWithWhatMustOutliveASegment) {
     for (const FeatureName& feature : kFeatureNames) {
         Features features;
         features.*feature.member = true;
-        const bool is_carried = feature.member == &Features::motion;
+        const bool is_carried = feature.member == &Features::motion || feature.member == &Features::lights;
         EXPECT_EQ(ray_record_bytes(features, sizeof(float)), least + (is_carried ? 4 : 0)) << feature.name;
     }
     EXPECT_LE(ray_record_bytes(kEverything, sizeof(float)), 64U);
