@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/geometry/occlusion.h"
 #include "core/geometry/traverse.h"
 #include "core/runtime/engine.h"
 #include "core/shading/shade.h"
@@ -60,7 +61,7 @@ class Tracer {
           depth_(settings.depth),
           split_depth_(settings.split_depth),
           roulette_(settings.roulette),
-          light_sampling_(settings.light_sampling),
+          light_sampling_(needed_light_sampling(scene.features, settings)),
           converter_(fixed),
           work_(work) {}
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/geometry/occlusion.h"
 #include "core/shading/shade.h"
 #include "wavefront/contributions.h"
 #include "wavefront/ray_record.h"

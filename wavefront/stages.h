@@ -164,8 +164,8 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
     static constexpr std::size_t kMostContributions = 1024;
 
     static std::size_t most_shadow_rays(const RenderContext<Scalar>& context, std::size_t most_records) {
-        const bool has_some = features.lights && context.settings.light_sampling != LightSampling::None;
-        return has_some ? most_records + kBeamRays + kRays : 0;
+        const bool has_some = needed_features(context.scene.features, context.settings).lights;
+        return features.lights && has_some ? most_records + kBeamRays + kRays : 0;
     }
     static std::size_t most_contributions(const RenderContext<Scalar>& context, std::size_t most_records) {
         return std::max(most_records, kMostContributions) + kBeamRays + kRays + most_shadow_rays(context, most_records);
@@ -223,7 +223,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         const Int<Real> id = select(is_hit, hit.primitive_id, Int<Real>(0));
         LightPart<Real> lights;
         if constexpr (features.lights) {
-            lights.sampling = context_.settings.light_sampling;
+            lights.sampling = needed_light_sampling(context_.scene.features, context_.settings);
             lights.arriving_density = record.density;
             lights.may_go_on = !is_deepest(record.step);
         }

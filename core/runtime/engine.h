@@ -115,6 +115,11 @@ inline Features needed_features(const Features& scene, const ImageSettings& sett
     return needed;
 }
 
+/// None where the scene has no lights.
+inline LightSampling needed_light_sampling(const Features& scene, const ImageSettings& settings) {
+    return scene.lights ? settings.light_sampling : LightSampling::None;
+}
+
 /// No sample carries more to the image in any channel. With light sampling a path adds at every hit, and at its end.
 template <class Scalar>
 double greatest_sample(const SceneView<Scalar>& scene, const ImageSettings& settings) {

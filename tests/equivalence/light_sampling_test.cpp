@@ -71,6 +71,25 @@ TEST_P(LightSampledImage, IsThatWithoutLightSamplingWhereItIsOff) {
     EXPECT_EQ(expected.report.total(&ThreadReport::shadow_rays), 0);
 }
 
+/// Code that counts and splits has light sampling whether there are lights or not.
+TEST(LightSamplingWithoutLights, IsNone) {
+    const CompiledScene<float> scene = compile<float>(small_scene("glass_stack", 20));
+    RenderSettings settings;
+    settings.end_sample = 4;
+    for (const int split_depth : {0, 2}) {
+        settings.split_depth = split_depth;
+        settings.light_sampling = LightSampling::None;
+        const Rendered expected = render(recursive::RecursiveEngine(), scene, settings);
+        settings.light_sampling = LightSampling::Mis;
+        for (const bool counts : {false, true}) {
+            settings.count_work = counts;
+            EXPECT_EQ(render(recursive::RecursiveEngine(), scene, settings).hash(), expected.hash());
+            EXPECT_EQ(render(wavefront::WavefrontEngine({}), scene, settings).hash(), expected.hash());
+        }
+        settings.count_work = false;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Equivalence, LightSampledImage,
                          testing::Values("cornell", "mirror_corridor", "textures", "caustic"),
                          [](const auto& info) { return std::string(info.param); });
