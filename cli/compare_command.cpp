@@ -67,7 +67,7 @@ std::vector<Contender> contenders(const RenderSettings& settings) {
     for (const wavefront::Rung& rung : wavefront::ladder(settings.threads))
         add(rung.name, rung.step, std::make_shared<wavefront::WavefrontEngine>(rung.pool), to_json(rung.pool));
 #ifdef RAYPOOL_HAS_EMBREE
-    if (settings.split_depth == 0) {
+    if (settings.split_depth == 0 && settings.light_sampling == LightSampling::None) {
         for (const auto rays : {peers::EmbreeRays::Single, peers::EmbreeRays::Packet}) {
             const auto engine = std::make_shared<peers::EmbreeEngine>(rays);
             add(engine->name(), "the traversal of Embree 3 with our physics", engine, nullptr, true);

@@ -133,6 +133,14 @@ class CheckpointTest(CheckpointCase):
         self.assertIn("170 to 300 are missing", result.stderr)
         self.assertEqual(self.hash_of(self.run_well(*SMALL, "--checkpoint", "ab.sums", "--resume")), expected)
 
+    def test_parts_of_a_render_with_light_sampling_are_the_whole(self):
+        lamp = ("render", "small_lamp", "--width", 32, "--spp", 12, "--light-sampling", "mis")
+        expected = self.hash_of(self.run_well(*lamp))
+        self.run_well(*lamp, "--samples", "0:5", "--checkpoint", "a.sums", "--engine", "recursive")
+        self.run_well(*lamp, "--samples", "5:12", "--checkpoint", "b.sums", "--engine", "wavefront")
+        self.assertEqual(self.hash_of(self.run_well("merge", "b.sums", "a.sums")), expected)
+        self.assertEqual(self.hash_of(self.run_well(*lamp, "--checkpoint", "a.sums", "--resume")), expected)
+
     def test_samples_that_cannot_be_extended_exactly_are_refused(self):
         self.run_well(*small(spp=64), "--checkpoint", "c.sums")
         resume = ("--checkpoint", "c.sums", "--resume")
@@ -243,7 +251,8 @@ class CheckpointTest(CheckpointCase):
         self.assert_refused(*RENDER, "--samples", "5:9", "--checkpoint", "c.sums", "--resume",
                             named=["c.sums", "0 to 1", "--samples"])
         for setting, value in (("seed", 5), ("depth", 7), ("width", 121), ("split-depth", 1),
-                               ("precision", "double"), ("sampler", "sobol"), ("target-error", 0.1)):
+                               ("precision", "double"), ("sampler", "sobol"), ("light-sampling", "mis"),
+                               ("target-error", 0.1)):
             self.assert_refused(*render(**{setting: value}), "--checkpoint", "c.sums", "--resume",
                                 named=["c.sums", setting.replace("-", "_")])
         self.assert_refused("render", "cornell", *RENDER[2:], "--checkpoint", "c.sums", "--resume", named="scene")

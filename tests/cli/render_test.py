@@ -134,6 +134,22 @@ class Render(CommandTest):
         summary = self.run_well("render", "scene.json", "--spp", 1, "--sampler", "sobol", "--roulette").stdout
         self.assertIn("depth 50 and roulette, sobol, seed 0", summary)
 
+    def test_light_sampling_changes_the_image_and_is_recorded(self):
+        hashes = {}
+        for mode in ("none", "light", "mis"):
+            for engine in ("recursive", "iterative", "wavefront"):
+                self.run_well("render", "small_lamp", "--width", 24, "--spp", 4, "--light-sampling", mode, "--engine",
+                              engine, "--stats", "s.json")
+                stats = json.loads((self.folder / "s.json").read_text())
+                hashes.setdefault(mode, set()).add(stats["hash"])
+                self.assertEqual(stats["settings"]["light_sampling"], mode)
+                self.assertEqual(stats["shadow_rays"] > 0, mode != "none")
+        self.assertEqual([len(of_mode) for of_mode in hashes.values()], [1, 1, 1])
+        self.assertEqual(len(set.union(*hashes.values())), 3)
+        summary = self.run_well("render", "small_lamp", "--width", 8, "--spp", 1, "--light-sampling", "mis").stdout
+        self.assertIn("depth 50, light sampling mis, seed 0", summary)
+        self.run_well("compare", "small_lamp", "--width", 16, "--spp", 1, "--light-sampling", "mis", "--check")
+
     def test_says_what_the_depth_cuts_off_at_most(self):
         stats = self.stats("--spp", 1, "--depth", 3)
         summary = self.run_well("render", "scene.json", "--spp", 1, "--depth", 3).stdout
