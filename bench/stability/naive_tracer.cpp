@@ -32,7 +32,7 @@ float half_b_distance(const Ray<float>& ray, const Vec3<float>& center, float ra
 class NaiveSpheres {
   public:
     NaiveSpheres(const SceneView<float>& scene, SphereDistance distance)
-        : scene_(scene), others_(scene), distance_(std::move(distance)) {
+        : scene_(scene), others_(static_cast<const ShapeView<float>&>(scene)), distance_(std::move(distance)) {
         others_.large_spheres = {};
         others_.sphere_tree = {};
     }
