@@ -83,8 +83,7 @@ double load_imbalance(const RenderReport& report) {
 }
 
 std::string run_once(Contender& contender, const CompiledScene<float>& scene, const RenderSettings& settings) {
-    Framebuffer framebuffer(scene.width, scene.height,
-                            FixedPoint::make(settings.end_sample, greatest_sample(scene, settings)));
+    Framebuffer framebuffer(scene.width, scene.height, fixed_point(scene, settings, settings.end_sample));
     contender.last = contender.engine->render(scene, settings, framebuffer);
     return framebuffer.hash();
 }

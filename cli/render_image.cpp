@@ -84,8 +84,7 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
                     {},
                     {},
                     0,
-                    Framebuffer(compiled.width, compiled.height,
-                                FixedPoint::make(record.spp, greatest_sample(compiled, record.settings)),
+                    Framebuffer(compiled.width, compiled.height, fixed_point(compiled, record.settings, record.spp),
                                 is_adaptive ? Moments::Second : Moments::First)};
     if (options.is_resumed) {
         if (ranks.is_first())

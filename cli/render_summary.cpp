@@ -24,6 +24,8 @@ void print_work(const RenderSettings& settings, const RenderReport& report) {
     print("{:.3f} M paths, {:.3f} M segments ({:.3f} a path) in {:.3f} s: {:.3f} M paths/s, {:.1f} ns a segment\n",
           paths * 1e-6, segments * 1e-6, segments / paths, report.seconds, paths / report.seconds * 1e-6,
           segments == 0 ? 0 : report.seconds * 1e9 * static_cast<double>(report.threads.size()) / segments);
+    if (const std::int64_t rays = report.total(&ThreadReport::shadow_rays); rays > 0)
+        print("{:.3f} M shadow rays, whose time is in that of the segments\n", static_cast<double>(rays) * 1e-6);
     if (settings.count_work)
         print("{:.2f} box tests and {:.2f} primitive tests a segment\n",
               static_cast<double>(report.total(&ThreadReport::box_tests)) / segments,

@@ -135,7 +135,7 @@ class Tracer {
         if constexpr (features.lights) {
             lights.sampling = light_sampling_;
             lights.arriving_density = path.density;
-            lights.may_go_on = path_step::bounce(path.step) + 1 < static_cast<std::uint32_t>(depth_);
+            lights.depth = depth_;
         }
         const Scattered<Scalar> out = scatter<features, Scalar, splitting>(
             scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key, path.step, seed(), split_depth_,

@@ -41,10 +41,9 @@ struct Rendered {
 /// Renders into an empty framebuffer with `render_into(framebuffer)`, which returns a RenderReport.
 template <class Scalar, class RenderInto>
 Rendered rendered_by(const CompiledScene<Scalar>& scene, const RenderSettings& settings, RenderInto render_into) {
-    Rendered out{
-        Framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, greatest_sample(scene, settings))),
-        {},
-        settings.end_sample - settings.first_sample};
+    Rendered out{Framebuffer(scene.width, scene.height, fixed_point(scene, settings, settings.end_sample)),
+                 {},
+                 settings.end_sample - settings.first_sample};
     out.report = render_into(out.framebuffer);
     return out;
 }

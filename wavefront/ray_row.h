@@ -39,4 +39,15 @@ RAYPOOL_INLINE Vec3<Real> columns(const Real* row, int first) {
     return vec3<Real>(row[first], row[first + 1], row[first + 2]);
 }
 
+/// The rays of transposed rows.
+template <class Real>
+RAYPOOL_INLINE WideRays<Real> rays_of_rows(const Real* row) {
+    using Row = RayRow<ScalarOf<Real>>;
+    WideRays<Real> rays;
+    rays.ray = {columns(row, Row::kOrigin), columns(row, Row::kDirection), row[Row::kTime]};
+    rays.inverse = inverse_of_scale<Real>(columns(row, Row::kScale));
+    rays.leaving_id = bits_of<Real>(row[Row::kLeaving]);
+    return rays;
+}
+
 }  // namespace raypool::wavefront

@@ -106,7 +106,7 @@ class ShadowStage {
             test_large_shapes(work);
             if constexpr (features.planar) {
                 detail::walk_stream<features, Real>(scene_.quad_tree, stream_, count(), intersection_, work);
-                end_hidden(0);
+                end_hidden();
             }
             detail::walk_stream<features, Real>(scene_.sphere_tree, stream_, count(), intersection_, work);
         }
@@ -123,10 +123,7 @@ class ShadowStage {
                                                        Row::kColumns);
             Real row[Row::kColumns];
             load_rows_at<Row::kColumns, Real>(stream_.rows()->value, offset, row);
-            WideRays<Real> rays;
-            rays.ray = {columns(row, Row::kOrigin), columns(row, Row::kDirection), row[Row::kTime]};
-            rays.inverse = inverse_of_scale<Real>(columns(row, Row::kScale));
-            rays.leaving_id = bits_of<Real>(row[Row::kLeaving]);
+            const WideRays<Real> rays = rays_of_rows<Real>(row);
             Hit<Real> hit;
             hit.t = row[Row::kDistance];
             hit.primitive_id = Int<Real>(
@@ -142,9 +139,9 @@ class ShadowStage {
     }
 
     /// Rays that something hides enter no box any more.
-    void end_hidden(std::size_t first) {
+    void end_hidden() {
         const StreamHits<Scalar> hits{stream_.rows(), stream_.distance(), stream_.primitive_id()};
-        for (std::size_t i = first; i < count(); ++i)
+        for (std::size_t i = 0; i < count(); ++i)
             if (hits.primitive_id[i] != light_id_[i]) hits.set(static_cast<std::uint32_t>(i), Scalar(-1), kNoPrimitive);
     }
 

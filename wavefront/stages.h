@@ -165,7 +165,8 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
 
     static std::size_t most_shadow_rays(const RenderContext<Scalar>& context, std::size_t most_records) {
         const bool has_some = needed_features(context.scene.features, context.settings).lights;
-        return features.lights && has_some ? most_records + kBeamRays + kRays : 0;
+        return features.lights && has_some ? std::min(most_records + kBeamRays + kRays, RayStream<Scalar>::kMostRays)
+                                           : 0;
     }
     static std::size_t most_contributions(const RenderContext<Scalar>& context, std::size_t most_records) {
         return std::max(most_records, kMostContributions) + kBeamRays + kRays + most_shadow_rays(context, most_records);
@@ -225,7 +226,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         if constexpr (features.lights) {
             lights.sampling = needed_light_sampling(context_.scene.features, context_.settings);
             lights.arriving_density = record.density;
-            lights.may_go_on = !is_deepest(record.step);
+            lights.depth = context_.settings.depth;
         }
         const Scattered<Real> out = scatter<features, Real, splitting>(
             context_.scene, record.ray, hit.t, id, record.throughput, record.key, record.step, context_.seed,
@@ -245,7 +246,9 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
                 contributions_.template put<Real>(record.key.pixel, out.throughput, ends);
         }
         const Uint32<Real> step = record.step + Uint32<Real>(1U);
-        const unsigned alive = mask_bits(out.is_alive && !is_deepest(record.step)) & hits;
+        const Mask<Real> is_deepest = from_uint32<Real>(path_step::bounce<Uint32<Real>>(step)) >=
+                                      Real(static_cast<Scalar>(context_.settings.depth));
+        const unsigned alive = mask_bits(out.is_alive && !is_deepest) & hits;
         RayRecord<Real> next = record;
         next.ray.origin = out.start.origin;
         next.leaving_id = id_bits<Real>(out.start.leaving_id);
@@ -253,7 +256,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         if constexpr (features.lights) next.density = lights.density;
         if constexpr (splitting == Splitting::On) {
             const Uint32<Real> reflected = path_step::reflected_branch<Uint32<Real>>(step);
-            const unsigned alive_too = mask_bits(out.is_reflected_alive && !is_deepest(record.step)) & hits;
+            const unsigned alive_too = mask_bits(out.is_reflected_alive && !is_deepest) & hits;
             next.ray.direction = out.reflected_direction;
             next.throughput = out.reflected_throughput;
             next.step = reflected;
@@ -267,12 +270,6 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         next.throughput = out.throughput;
         records.template append<Real>(target, next, alive, end);
         return static_cast<std::size_t>(std::popcount(alive));
-    }
-
-    /// Whether the segment that ended at step `step` was the last that the depth allows.
-    RAYPOOL_INLINE Mask<Real> is_deepest(const Uint32<Real>& step) const {
-        return from_uint32<Real>(path_step::bounce<Uint32<Real>>(step + Uint32<Real>(1U))) >=
-               Real(static_cast<Scalar>(context_.settings.depth));
     }
 
     /// Traces the shadow rays that wait, and adds what they bring.

@@ -155,10 +155,7 @@ class StreamWalk {
         for (std::size_t first = 0; first < count; first += kRays) {
             Real row[Row::kColumns];
             load_rows_at<Row::kColumns, Real>(hits_.rows->value, list + first, row);
-            WideRays<Real> rays;
-            rays.ray = {columns(row, Row::kOrigin), columns(row, Row::kDirection), row[Row::kTime]};
-            rays.inverse = inverse_of_scale<Real>(columns(row, Row::kScale));
-            rays.leaving_id = bits_of<Real>(row[Row::kLeaving]);
+            const WideRays<Real> rays = rays_of_rows<Real>(row);
             Hit<Real> hit;
             hit.t = row[Row::kDistance];
             hit.primitive_id = Int<Real>(kLargestId);  // a tie with the hit so far is settled below, where it is rare

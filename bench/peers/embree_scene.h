@@ -137,11 +137,7 @@ template <Features features>
     Query<float> query{{}, {ray, ray_inverse<float>(ray.direction), leaving_id}};
     const SpreadRay<Shapes> spread(ray, query.rays.inverse, leaving_id);
     Hit<float> hit;
-    const auto test_all = [&](const auto& blocks) {
-        for (const auto& block : blocks) detail::intersect_block<features, InBox::No, Shapes>(block, spread, hit);
-    };
-    test_all(scene.large_spheres);
-    if constexpr (features.planar) test_all(scene.planes);
+    raypool::detail::test_untreed<features, Shapes>(scene, spread, hit, search);
     return search.embree->closest<float>(query, hit, -1);
 }
 

@@ -86,8 +86,7 @@ void check_threads(int given, int asked) {
 
 Measured measure(const Engine& engine, const StudyScene& scene, const RenderSettings& settings) {
     const CompiledScene<float>& compiled = scene.compiled;
-    Framebuffer framebuffer(compiled.width, compiled.height,
-                            FixedPoint::make(settings.end_sample, greatest_sample(compiled, settings)));
+    Framebuffer framebuffer(compiled.width, compiled.height, fixed_point(compiled, settings, settings.end_sample));
     RenderReport report = engine.render(compiled, settings, framebuffer);
     check_threads(static_cast<int>(report.threads.size()), settings.threads);
     return {std::move(report), framebuffer.hash()};

@@ -17,10 +17,11 @@ int ceil_log2(double value) {
 constexpr double kLeastMaxRadiance = 0x1p-20;  ///< a black scene still has a step
 }  // namespace
 
-FixedPoint FixedPoint::make(std::int64_t spp, double max_radiance) {
+FixedPoint FixedPoint::make(std::int64_t spp, double max_radiance, std::int64_t parts) {
     const int limit_bits = ceil_log2(std::max(max_radiance, kLeastMaxRadiance)) + 1;
     const int spp_bits = ceil_log2(static_cast<double>(std::max(spp, kExtensibleSamples)));
-    return {62 - limit_bits - spp_bits, std::ldexp(1.0, limit_bits)};
+    const int part_bits = ceil_log2(static_cast<double>(parts));
+    return {62 - limit_bits - spp_bits - part_bits, std::ldexp(1.0, limit_bits)};
 }
 
 FixedRgb SampleConverter::convert_bad(const Eigen::Vector3d& radiance) {

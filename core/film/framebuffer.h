@@ -56,13 +56,13 @@ struct FixedSquare {
 /// How radiance becomes an integer.
 struct FixedPoint {
     int fraction_bits = 0;
-    double limit = 0;  ///< radiance above which a channel is cut: at least twice max_radiance
+    double limit = 0;  ///< radiance above which a channel of a part of a sample is cut: at least twice max_radiance
 
     /// Renders of up to this many samples a pixel have one step, so that one of them can be extended to any other.
     static constexpr std::int64_t kExtensibleSamples = 16384;
 
-    /// For up to `spp` samples a pixel, each channel at most max_radiance.
-    static FixedPoint make(std::int64_t spp, double max_radiance);
+    /// For up to `spp` samples a pixel that come in up to `parts` parts, each channel of a part at most max_radiance.
+    static FixedPoint make(std::int64_t spp, double max_radiance, std::int64_t parts = 1);
 
     bool operator==(const FixedPoint&) const = default;
     [[nodiscard]] double scale() const { return std::ldexp(1.0, fraction_bits); }

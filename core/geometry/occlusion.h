@@ -50,16 +50,7 @@ template <Features features, class Scalar, class Work>
     using Real = Wide<Scalar, kTreeWidth<Scalar>>;
     const SpreadRay<Real> spread(ray, ray_inverse<Scalar>(ray.direction), leaving_id);
     Hit<Scalar> hit = light;
-    for (const auto& block : scene.large_spheres) {
-        work.count(block);
-        detail::intersect_block<features, InBox::No, Real>(block, spread, hit);
-    }
-    if constexpr (features.planar) {
-        for (const auto& block : scene.planes) {
-            work.count(block);
-            detail::intersect_block<features, InBox::No, Real>(block, spread, hit);
-        }
-    }
+    detail::test_untreed<features, Real>(scene, spread, hit, work);
     if (hit.primitive_id != light.primitive_id) return true;
     if constexpr (features.planar) {
         if (detail::is_met<features, Real>(scene.quad_tree, spread, light, work)) return true;

@@ -197,6 +197,20 @@ RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& r
     }
 }
 
+/// The shapes that are in no tree.
+template <Features features, class Real, class Work>
+RAYPOOL_INLINE void test_untreed(const ShapeView<ScalarOf<Real>>& scene, const SpreadRay<Real>& ray,
+                                 Hit<ScalarOf<Real>>& hit, Work& work) {
+    const auto test_all = [&](const auto& blocks) {
+        for (const auto& block : blocks) {
+            work.count(block);
+            intersect_block<features, InBox::No, Real>(block, ray, hit);
+        }
+    };
+    test_all(scene.large_spheres);
+    if constexpr (features.planar) test_all(scene.planes);
+}
+
 /// From `child` of the tree on.
 template <Features features, class Real, class Block, class Work>
 RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tree, const SpreadRay<Real>& ray,
@@ -253,17 +267,8 @@ template <Features features, class Scalar, class Work>
     using Real = Wide<Scalar, kTreeWidth<Scalar>>;
     const SpreadRay<Real> spread(ray, ray_inverse<Scalar>(ray.direction), leaving_id);
     Hit<Scalar> hit;
-    for (const auto& block : scene.large_spheres) {
-        work.count(block);
-        detail::intersect_block<features, InBox::No, Real>(block, spread, hit);
-    }
-    if constexpr (features.planar) {
-        for (const auto& block : scene.planes) {
-            work.count(block);
-            detail::intersect_block<features, InBox::No, Real>(block, spread, hit);
-        }
-        detail::walk<features, Real>(scene.quad_tree, spread, hit, work);
-    }
+    detail::test_untreed<features, Real>(scene, spread, hit, work);
+    if constexpr (features.planar) detail::walk<features, Real>(scene.quad_tree, spread, hit, work);
     detail::walk<features, Real>(scene.sphere_tree, spread, hit, work);
     return hit;
 }

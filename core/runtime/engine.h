@@ -120,11 +120,16 @@ inline LightSampling needed_light_sampling(const Features& scene, const ImageSet
     return scene.lights ? settings.light_sampling : LightSampling::None;
 }
 
-/// No sample carries more to the image in any channel. With light sampling a path adds at every hit, and at its end.
+/// For up to `spp` samples a pixel of a render. With light sampling a sample comes in parts, one at each hit and one at
+/// its end. Each is at most the scene's greatest radiance, but by LightSampling::Light, which has no bound: its parts
+/// are cut where they are as much as a whole sample may be, and so may be all branches of a split path.
 template <class Scalar>
-double greatest_sample(const SceneView<Scalar>& scene, const ImageSettings& settings) {
-    const bool samples_lights = needed_features(scene.features, settings).lights;
-    return scene.max_radiance * (samples_lights ? std::max(settings.depth, 1) : 1);
+FixedPoint fixed_point(const SceneView<Scalar>& scene, const ImageSettings& settings, std::int64_t spp) {
+    const LightSampling sampling = needed_light_sampling(scene.features, settings);
+    if (sampling == LightSampling::None) return FixedPoint::make(spp, scene.max_radiance);
+    const std::int64_t parts = std::clamp(settings.depth, 1, kMostSampledHits + 1);
+    if (sampling == LightSampling::Mis) return FixedPoint::make(spp, scene.max_radiance, parts);
+    return FixedPoint::make(spp, scene.max_radiance * static_cast<double>(parts), parts << settings.split_depth);
 }
 
 /// What engines refuse alike, as an InputError.

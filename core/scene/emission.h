@@ -1,17 +1,26 @@
 /// How much light the shapes of a scene send out: what light sampling chooses lights by.
 #pragma once
 
+#include <vector>
+
 #include "core/scene/scene.h"
 
 namespace raypool {
 
-/// The mean of the texture's radiance over its cells or texels, times the strength, averaged over the channels; 0 of
-/// what is no emitter.
-double mean_radiance(const Scene& scene, const Material& material);
+/// Power in the unit of radiance times that of length squared, pi left out: area times mean radiance, for both sides of
+/// a quad unless its front alone shines, and for the outside of a sphere. 0 of what is no emitter. The mean is over a
+/// texture's cells or texels and over channels, and is taken once for each material.
+class EmittedPower {
+  public:
+    /// The scene outlives it.
+    explicit EmittedPower(const Scene& scene);
 
-/// Power in the unit of radiance times that of length squared, pi left out: area times mean radiance, for both sides
-/// of a quad unless its front alone shines, and for the outside of a sphere.
-double emitted_power(const Scene& scene, const Sphere& sphere);
-double emitted_power(const Scene& scene, const Quad& quad);
+    [[nodiscard]] double of(const Sphere& sphere) const;
+    [[nodiscard]] double of(const Quad& quad) const;
+
+  private:
+    const Scene& scene_;
+    std::vector<double> mean_radiance_;  ///< by material
+};
 
 }  // namespace raypool

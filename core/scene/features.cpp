@@ -30,6 +30,7 @@ Features material_features(const Scene& scene, const Material& material) {
 
 Features scene_features(const Scene& scene) {
     Features features;
+    const EmittedPower power(scene);
     const auto add_material = [&](int material_id) {
         const Features more = material_features(scene, scene.materials[material_id]);
         for (const FeatureName& feature : kFeatureNames) features.*feature.member |= more.*feature.member;
@@ -38,11 +39,11 @@ Features scene_features(const Scene& scene) {
         add_material(sphere.material_id);
         // With a shutter that opens and closes at time 0 nothing has moved yet.
         features.motion |= sphere.center0 != sphere.center1 && scene.camera.shutter_close > 0;
-        features.lights |= emitted_power(scene, sphere) > 0;
+        features.lights |= power.of(sphere) > 0;
     }
     for (const Quad& quad : scene.quads) {
         add_material(quad.material_id);
-        features.lights |= emitted_power(scene, quad) > 0;
+        features.lights |= power.of(quad) > 0;
     }
     for (const Plane& plane : scene.planes) add_material(plane.material_id);
     features.planar = !scene.quads.empty() || !scene.planes.empty();

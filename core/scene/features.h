@@ -24,7 +24,7 @@ struct Features {
     bool emissive = false;    ///< surfaces that shine
     bool checker = false;     ///< 3-D checkers
     bool uv = false;          ///< textures that need surface coordinates: uv checkers and images
-    bool lights = false;      ///< emissive quads or spheres: light sampling may be on
+    bool lights = false;      ///< emissive quads or spheres: light sampling is possible
 
     bool operator==(const Features&) const = default;
 };

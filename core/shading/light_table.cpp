@@ -1,6 +1,8 @@
 #include "core/shading/light_table.h"
 
-#include <bit>
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <Eigen/Geometry>
@@ -10,6 +12,8 @@
 namespace raypool {
 
 namespace {
+
+constexpr double kRandomSteps = 1 << 24;  ///< random numbers are multiples of 2^-24
 
 /// An entry of the alias table: kept with the probability `threshold`.
 struct AliasEntry {
@@ -38,7 +42,35 @@ std::vector<AliasEntry> alias_table(std::vector<double> shares) {
             poor.push_back(giver);
         }
     }
-    return table;  // what is left is 1 to rounding
+    // What is left is 1 to rounding. Random numbers go by steps, and a threshold of whole steps is met exactly.
+    for (AliasEntry& entry : table) entry.threshold = std::round(entry.threshold * kRandomSteps) / kRandomSteps;
+    return table;
+}
+
+/// The number of random numbers for which sample_light() draws a row before `row`: it rounds a product in Scalar.
+template <class Scalar>
+double steps_before(std::size_t row, std::size_t count) {
+    if (row == count) return kRandomSteps;
+    const auto drawn = [count](double step) {
+        return std::floor(static_cast<Scalar>(step / kRandomSteps) * static_cast<Scalar>(count));
+    };
+    const auto first = static_cast<double>(row);
+    double step = std::ceil(first * kRandomSteps / static_cast<double>(count));
+    while (step > 0 && drawn(step - 1) >= first) --step;
+    return step;
+}
+
+/// With which probability each light is chosen.
+template <class Scalar>
+std::vector<double> chances(const std::vector<AliasEntry>& table) {
+    std::vector<double> chances(table.size());
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        const double drawn =
+            (steps_before<Scalar>(i + 1, table.size()) - steps_before<Scalar>(i, table.size())) / kRandomSteps;
+        chances[i] += drawn * table[i].threshold;
+        chances[table[i].alias] += drawn * (1 - table[i].threshold);
+    }
+    return chances;
 }
 
 }  // namespace
@@ -47,6 +79,7 @@ template <class Scalar>
 LightTable<Scalar> light_table(const Scene& scene, const std::vector<bool>& is_hidden) {
     using Row = LightRow<Scalar>;
     LightTable<Scalar> table;
+    const EmittedPower emitted(scene);
     std::vector<double> powers;
     std::vector<double> areas;  ///< of spheres 1: their density is one of solid angle
     const auto set = [](Row& row, int column, const Vector3d& v) {
@@ -61,7 +94,7 @@ LightTable<Scalar> light_table(const Scene& scene, const std::vector<bool>& is_h
     };
     for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
         const Sphere& sphere = scene.spheres[i];
-        const double power = emitted_power(scene, sphere);
+        const double power = emitted.of(sphere);
         if (power == 0 || is_hidden[i]) continue;
         Row& row = add(i, power, 1);
         set(row, Row::kPoint, sphere.center0);
@@ -70,7 +103,7 @@ LightTable<Scalar> light_table(const Scene& scene, const std::vector<bool>& is_h
     }
     for (std::size_t i = 0; i < scene.quads.size(); ++i) {
         const Quad& quad = scene.quads[i];
-        const double power = emitted_power(scene, quad);
+        const double power = emitted.of(quad);
         const std::size_t id = scene.spheres.size() + i;
         if (power == 0 || is_hidden[id]) continue;
         Row& row = add(id, power, quad.edge_u.cross(quad.edge_v).norm());
@@ -83,13 +116,15 @@ LightTable<Scalar> light_table(const Scene& scene, const std::vector<bool>& is_h
     const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
     for (double& power : powers) power /= sum;
     const std::vector<AliasEntry> entries = alias_table(powers);
+    const std::vector<double> chosen = chances<Scalar>(entries);
     table.weights.resize(scene.spheres.size() + scene.quads.size() + scene.planes.size());
     for (std::size_t i = 0; i < table.rows.size(); ++i) {
         Row& row = table.rows[i];
         row.value[Row::kThreshold] = static_cast<Scalar>(entries[i].threshold);
         row.value[Row::kAlias] = of_bits<Scalar>(static_cast<Int<Scalar>>(entries[i].alias));
-        table.weights[static_cast<std::size_t>(bits_of<Scalar>(row.value[Row::kPrimitive]))] =
-            static_cast<Scalar>(powers[i] / areas[i]);
+        if (chosen[i] > 0)  // else it is found by chance alone
+            table.weights[static_cast<std::size_t>(bits_of<Scalar>(row.value[Row::kPrimitive]))] =
+                std::max(static_cast<Scalar>(chosen[i] / areas[i]), std::numeric_limits<Scalar>::min());
     }
     return table;
 }

@@ -30,7 +30,8 @@ template <class Scalar>
 struct LightTable {
     std::vector<LightRow<Scalar>> rows;
     /// By primitive id, and empty where there is no light: the probability that a light is chosen, of a quad divided by
-    /// its area; 0 of what is no light.
+    /// its area; 0 of what is no light. It is exactly that with which sample_light() chooses from the rows, whose
+    /// random numbers are multiples of 2^-24; so it differs from the share of the power by rounding to such steps.
     std::vector<Scalar> weights;
 };
 

@@ -18,12 +18,17 @@ namespace raypool {
 /// and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995).
 enum class LightSampling : std::uint8_t { None, Light, Mis };
 
+/// Hits of a path at which lights may be sampled. Behind them lights are found by chance, so that no sample comes in
+/// more parts, whose sum must fit into an integer.
+inline constexpr std::int32_t kMostSampledHits = 255;
+
 /// A direction toward a light.
 template <class Real>
 struct LightSample {
     Vec3<Real> direction;    ///< unit
     Real t;                  ///< how far the light is; infinity where it cannot be seen from here
     Int<Real> primitive_id;  ///< which it is
+    Mask<Real> is_front;     ///< it is seen from its outward side
 };
 
 namespace detail {
@@ -112,6 +117,7 @@ RAYPOOL_INLINE LightSample<Real> sample_light(const SceneView<ScalarOf<Real>>& s
     const Vec3<Real> to = vec3<Real>(place[0] - origin[0], place[1] - origin[1], place[2] - origin[2]);
     sample.direction = vec3<Real>(Real(1), Real(0), Real(0));
     sample.t = Real(kInfinity<Real>);
+    sample.is_front = Mask<Real>(false);
     if (!all(is_sphere)) {
         const Vec3<Real> across = along<Real>(to, random[1], part(Light::kEdgeU));
         const Vec3<Real> point = along<Real>(across, random[2], part(Light::kEdgeV));
@@ -119,7 +125,12 @@ RAYPOOL_INLINE LightSample<Real> sample_light(const SceneView<ScalarOf<Real>>& s
         sample.direction = unit<Real>(select<Real>(is_apart, point, sample.direction));
         const Vec3<Real> normal = vec3<Real>(row[Row::kCenter], row[Row::kCenter + 1], row[Row::kCenter + 2]);
         const Vec3<Real> plane = vec3<Real>(row[Row::kMotion], row[Row::kMotion + 1], row[Row::kMotion + 2]);
-        sample.t = plane_distance<Real>(origin, sample.direction, plane, normal, is_leaving || !is_apart);
+        const Real met = plane_distance<Real>(origin, sample.direction, plane, normal, is_leaving || !is_apart);
+        // By the plane, as a hit is measured; by the point where the origin lies in the plane but for rounding.
+        const Real apart = sqrt(dot<Real>(point, point));
+        const Mask<Real> is_grazing = met < Real(kInfinity<Real>) && !(abs(met - apart) <= Real(S(1e-3)) * apart);
+        sample.t = select(is_grazing, apart, met);
+        sample.is_front = dot<Real>(sample.direction, normal) < Real(0);
     }
     if (any(is_sphere)) {
         const Real square = dot<Real>(to, to);
@@ -141,20 +152,21 @@ RAYPOOL_INLINE LightSample<Real> sample_light(const SceneView<ScalarOf<Real>>& s
         // Rounding lets a direction pass the edge, and beside a light that is small or far all of them may.
         const Mask<Real> is_passed = is_outside && !is_leaving && !(met < Real(kInfinity<Real>));
         sample.t = select(is_sphere, select(is_passed, dot<Real>(to, direction), met), sample.t);
+        sample.is_front = (is_sphere && is_outside) || (!is_sphere && sample.is_front);
     }
     return sample;
 }
 
-/// What a light sends along `ray`, which meets it at distance `t`. `row` is the SurfaceRow of `primitive_id`.
+/// What a light sends toward where the ray of a sample starts. `row` is the light's SurfaceRow.
 template <Features features, class Real>
-RAYPOOL_INLINE Vec3<Real> emitted_radiance(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray, const Real& t,
-                                           const Int<Real>& primitive_id, const Real* row,
+RAYPOOL_INLINE Vec3<Real> emitted_radiance(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray,
+                                           const LightSample<Real>& light, const Real* row,
                                            const Mask<Real>& is_wanted) {
     const SurfaceCode<Int<Real>> code{bits_of<Real>(row[SurfaceRow<ScalarOf<Real>>::kCode])};
-    const SurfacePoint<Real> point = surface_point<features, Real>(ray, t, row);
+    const SurfacePoint<Real> point = surface_point<features, Real>(ray, light.t, row);
     const SurfaceMaterial<features, Real> material{code.material(), row[SurfaceRow<ScalarOf<Real>>::kParameter]};
-    const Vec3<Real> colour = surface_colour<features, Real>(scene, point, primitive_id, row, code, is_wanted);
-    const Real emission = material.emission(point.is_front);
+    const Vec3<Real> colour = surface_colour<features, Real>(scene, point, light.primitive_id, row, code, is_wanted);
+    const Real emission = material.emission(light.is_front);
     return vec3<Real>(colour[0] * emission, colour[1] * emission, colour[2] * emission);
 }
 

@@ -4,6 +4,8 @@
 /// carried on by value: throughput is multiplied down the path in one order, so that engines agree.
 #pragma once
 
+#include <algorithm>
+
 #include "core/math/path.h"
 #include "core/math/random.h"
 #include "core/shading/bsdf.h"
@@ -39,7 +41,7 @@ template <class Real>
 struct LightPart {
     LightSampling sampling = LightSampling::None;
     Real arriving_density = Real(0);  ///< RayRecord::density of the ray that arrives
-    Mask<Real> may_go_on;             ///< the path may have a segment more
+    std::int32_t depth = 0;           ///< most segments of a path
 
     // Set by scatter(), unless the sampling is None.
     Real density = Real(0);  ///< of the direction of what goes on, where lights were sampled too; else 0
@@ -66,8 +68,11 @@ RAYPOOL_INLINE void share_with_lights(const SceneView<ScalarOf<Real>>& scene, co
         for (int i = 0; i < 3; ++i)
             out.throughput[i] = select(is_sampled, out.throughput[i] * share, out.throughput[i]);
     }
-    lights.has_shadow_ray = material.is_diffuse() && lights.may_go_on;
-    lights.density = bsdf_density<features, Real>(point, material, out.direction);
+    const auto most_hits = static_cast<ScalarOf<Real>>(std::min(lights.depth - 1, kMostSampledHits));
+    lights.has_shadow_ray =
+        material.is_diffuse() && from_uint32<Real>(path_step::bounce<Uint32<Real>>(step)) < Real(most_hits);
+    lights.density =
+        select(lights.has_shadow_ray, bsdf_density<features, Real>(point, material, out.direction), Real(0));
     if (none(lights.has_shadow_ray)) return;
 
     Real light_row[Row::kColumns];
@@ -81,8 +86,8 @@ RAYPOOL_INLINE void share_with_lights(const SceneView<ScalarOf<Real>>& scene, co
     const Real weight = detail::gather<Real>(scene.light_weights.data(), light.primitive_id);
     const Real of_light = light_density<features, Real>(shadow_ray, light.t, weight, light_row);
     const Real share = density / (is_shared ? of_light + density : of_light);
-    const Vec3<Real> radiance = emitted_radiance<features, Real>(scene, shadow_ray, light.t, light.primitive_id,
-                                                                 light_row, lights.has_shadow_ray);
+    const Vec3<Real> radiance =
+        emitted_radiance<features, Real>(scene, shadow_ray, light, light_row, lights.has_shadow_ray);
     for (int i = 0; i < 3; ++i) lights.radiance[i] = out.throughput[i] * (radiance[i] * share);
     lights.has_shadow_ray = lights.has_shadow_ray && carries_light<Real>(lights.radiance);
 }

@@ -174,6 +174,34 @@ TEST(LightSampling, KeepsToTheDepth) {
     }
 }
 
+/// In a white room around a small lamp a third of the paths is longer than light sampling goes on: kMostSampledHits.
+TEST(LightSampling, LeavesTheHitsBehindTheLastThatItSamplesToChance) {
+    TestScene scene(16, 16, Vector3d::Zero());
+    scene.sphere({0, 0, 0}, 1, scene.diffuse(0.999));
+    scene.sphere({0, 0, 0}, 0.06, scene.emitter(1));
+    scene.look({0.5, 0, 0}, {0.5, 0.3, 0.2}, 60);
+    constexpr std::int32_t kDepth = 5000;
+    const Rendered by_chance = render_with<float>(scene, LightSampling::None, 64, 0, kDepth);
+    EXPECT_GT(by_chance.report.segments(), 150 * by_chance.report.paths());
+    const std::vector<double> a = pixel_values(by_chance);
+    const std::vector<double> b = pixel_values(render_with<float>(scene, LightSampling::Mis, 64, 1, kDepth));
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < a.size(); ++i) differences.push_back(b[i] - a[i]);
+    EXPECT_TRUE(mean_agrees(differences, 0));
+
+    // So the step of the sums is that of so many parts, however deep paths may go.
+    const CompiledScene<float> compiled = compile<float>(scene);
+    const auto sums = [&](std::int32_t depth) {
+        ImageSettings settings;
+        settings.depth = depth;
+        settings.light_sampling = LightSampling::Mis;
+        return fixed_point(compiled, settings, 64);
+    };
+    EXPECT_EQ(sums(kMostSampledHits + 1), sums(path_step::kMostBounces));
+    EXPECT_EQ(sums(50).scale(), std::ldexp(FixedPoint::make(64, 1).scale(), -6));
+    EXPECT_EQ(sums(50).limit, FixedPoint::make(64, 1).limit);
+}
+
 /// A closed box whose walls shine and reflect: what is everywhere is radiance / (1 - albedo), and every sample is
 /// bounded.
 TEST(LightSampling, KeepsAFurnaceWithAShiningWall) {

@@ -158,6 +158,22 @@ TEST(Session, TakesTheMemoryOfOneRenderForAnyNumberOfUnits) {
     }
 }
 
+TEST(Session, LeavesCopiesOfItsReportAsTheyWere) {
+    const CompiledScene<float> scene = compile<float>(small_scene("paper", 8));
+    Framebuffer framebuffer = empty_framebuffer(scene, 3);
+    RenderSettings settings = session_settings(3, 1);
+    settings.log_rounds = true;
+    const auto session = WavefrontEngine({}).begin(scene, settings, framebuffer);
+    for (std::int64_t sample = 0; sample < 3; ++sample) {
+        const RenderReport before = session->report();
+        const std::size_t rounds = pool_report(before).rounds.size();
+        const RenderReport part = session->add({sample, sample + 1, nullptr});
+        EXPECT_GT(pool_report(part).rounds.size(), 0U);
+        EXPECT_EQ(pool_report(before).rounds.size(), rounds);
+        EXPECT_EQ(pool_report(session->report()).rounds.size(), rounds + pool_report(part).rounds.size());
+    }
+}
+
 TEST(PrefixSumAppend, TakesTheMemoryOfAPoolForEachThreadAndOneMore) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 8));
     const auto pool_bytes = [&](Append append, int threads) {
