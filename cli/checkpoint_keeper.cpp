@@ -26,7 +26,7 @@ Checkpoint load_checkpoint(const CheckpointOptions& options, const Checkpoint& w
     Checkpoint sums = read_checkpoint(options.file);
     try {
         check_same_render(sums, wanted);
-        if (sums.framebuffer.has_squares() && sums.spp != wanted.spp)
+        if (sums.framebuffer.has_halves() && sums.spp != wanted.spp)
             throw InputError(fmt::format("of an adaptive render with --spp {}, by which it chooses samples, not {}",
                                          sums.spp, wanted.spp));
     } catch (const InputError& error) {

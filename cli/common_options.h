@@ -22,7 +22,7 @@ struct CommonOptions {
     std::string seed = "0";
     std::string sampler = "independent";
     bool roulette = false;
-    std::string light_sampling = "none";
+    std::string light_sampling = "mis";  ///< where the scene has lights
     int threads = 0;  ///< 0: OpenMP's
     std::optional<std::string> schedule;
     std::optional<std::string> grain;

@@ -148,6 +148,7 @@ int compare(const CompareOptions& options) {
     settings.schedule = chosen_schedule(options.schedule, options.grain);
     const Scene scene = scene_of(options);
     const CompiledScene<float> compiled = compile<float>(scene);
+    settings.light_sampling = needed_light_sampling(compiled.features, settings);
 
     std::vector<Contender> list = contenders(settings);
     const int repeats = options.only_check ? 1 : options.repeats;

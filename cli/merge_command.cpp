@@ -40,7 +40,7 @@ void with_name(const std::string& file, Work work) {
 
 Checkpoint read_part(const std::string& file) {
     Checkpoint part = read_checkpoint(file);
-    if (part.framebuffer.has_squares())
+    if (part.framebuffer.has_halves())
         throw InputError(fmt::format("{}: of an adaptive render, which has no parts", file));
     return part;
 }

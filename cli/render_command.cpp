@@ -31,15 +31,15 @@ namespace raypool::cli {
 
 namespace {
 
-/// Sums, the image made of them and, where asked for, costs with their image, second moments with their estimates and
-/// the checkpoint's bytes must fit into the memory that is available, before anything is touched. Each rank on this
+/// Sums, the image made of them and, where asked for, costs with their image, a second half of the sums with estimates
+/// and the checkpoint's bytes must fit into the memory that is available, before anything is touched. Each rank on this
 /// machine has its own.
 void check_memory(const Scene& scene, const RenderOptions& options, const cluster::Ranks& ranks) {
     std::size_t pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
     if (!options.cost_image.empty()) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(float);
     if (options.target_error > 0)
-        pixel_bytes += 2 * sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
-    if (!options.checkpoint.file.empty()) pixel_bytes += 5 * sizeof(std::int64_t) + sizeof(std::int32_t);
+        pixel_bytes += 3 * sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
+    if (!options.checkpoint.file.empty()) pixel_bytes += 6 * sizeof(std::int64_t) + sizeof(std::int32_t);
     check_available(static_cast<std::size_t>(scene.width * scene.height) * pixel_bytes *
                         static_cast<std::size_t>(ranks.on_this_machine()),
                     fmt::format("--width: the sums and images of {} x {} pixels", scene.width, scene.height));

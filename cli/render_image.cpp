@@ -32,8 +32,8 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
     if (record.target_error > 0) {
         std::vector<std::int32_t> counts = sums.sample_counts;
         if (counts.empty()) counts.resize(static_cast<std::size_t>(scene.pixel_count()));
-        AdaptivePlan plan({record.target_error, scene.max_radiance, record.settings.end_sample}, std::move(counts),
-                          sums.rounds);
+        AdaptivePlan plan({record.target_error, greatest_sample(scene, record.settings), record.settings.end_sample},
+                          std::move(counts), sums.rounds);
         const auto keep = [&] {
             sums.sample_counts = plan.sample_counts();
             sums.rounds = plan.rounds();
@@ -75,6 +75,7 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
     Stopwatch watch;
     const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
     record.features = compiled.features;
+    record.settings.light_sampling = needed_light_sampling(compiled.features, record.settings);
     record.truncation_bound = compiled.truncation_bound(record.settings.depth);
     record.compile_s = watch.lap();
 
@@ -85,7 +86,7 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
                     {},
                     0,
                     Framebuffer(compiled.width, compiled.height, fixed_point(compiled, record.settings, record.spp),
-                                is_adaptive ? Moments::Second : Moments::First)};
+                                is_adaptive ? Halves::Apart : Halves::Together)};
     if (options.is_resumed) {
         if (ranks.is_first())
             sums = load_checkpoint(options, sums, {record.settings.first_sample, record.settings.end_sample});

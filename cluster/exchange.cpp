@@ -25,18 +25,20 @@ struct ReportHead {
 };
 static_assert(std::is_trivially_copyable_v<ReportHead> && std::is_trivially_copyable_v<ThreadReport>);
 
+/// All that a pixel has.
+std::span<std::int64_t> sums_of(Framebuffer& framebuffer, std::uint32_t pixel) {
+    const std::size_t count = framebuffer.has_halves() ? 6 : 3;
+    return framebuffer.sums().subspan(count * pixel, count);
+}
+
 }  // namespace
 
 void gather(Ranks& ranks, Framebuffer& framebuffer) {
-    if (!framebuffer.has_squares()) ranks.sum_at_first(framebuffer.sums());
+    if (!framebuffer.has_halves()) ranks.sum_at_first(framebuffer.sums());
 }
 
 void clear(Framebuffer& framebuffer, const std::vector<std::uint32_t>& pixels) {
-    for (const std::size_t pixel : pixels) {
-        std::fill_n(framebuffer.sums().begin() + static_cast<std::ptrdiff_t>(3 * pixel), 3, 0);
-        if (framebuffer.has_squares())
-            std::fill_n(framebuffer.squares().begin() + static_cast<std::ptrdiff_t>(2 * pixel), 2, 0);
-    }
+    for (const std::uint32_t pixel : pixels) std::ranges::fill(sums_of(framebuffer, pixel), 0);
 }
 
 void sum_everywhere(Ranks& ranks, Framebuffer& framebuffer, const std::vector<std::uint32_t>& pixels) {
@@ -44,19 +46,14 @@ void sum_everywhere(Ranks& ranks, Framebuffer& framebuffer, const std::vector<st
     for (std::size_t begin = 0; begin < count; begin += kChunkPixels) {
         const std::size_t end = std::min(begin + kChunkPixels, count);
         std::vector<std::int64_t> packed;
-        packed.reserve(5 * (end - begin));
         for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t pixel = pixels[i];
-            for (std::size_t c = 0; c < 3; ++c) packed.push_back(framebuffer.sums()[3 * pixel + c]);
-            for (std::size_t c = 0; c < 2; ++c) packed.push_back(framebuffer.squares()[2 * pixel + c]);
+            const std::span<const std::int64_t> sums = sums_of(framebuffer, pixels[i]);
+            packed.insert(packed.end(), sums.begin(), sums.end());
         }
         ranks.sum_everywhere(packed);
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t pixel = pixels[i];
-            const std::int64_t* sums = &packed[5 * (i - begin)];
-            std::copy_n(sums, 3, &framebuffer.sums()[3 * pixel]);
-            std::copy_n(sums + 3, 2, &framebuffer.squares()[2 * pixel]);
-        }
+        auto from = packed.cbegin();
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::int64_t& sum : sums_of(framebuffer, pixels[i])) sum = *from++;
     }
 }
 
@@ -64,10 +61,7 @@ void broadcast(Ranks& ranks, Checkpoint& sums) {
     broadcast(ranks, sums.ranges);
     broadcast(ranks, sums.sample_counts);
     sums.rounds = static_cast<int>(ranks.greatest(sums.rounds));
-    if (sums.framebuffer.has_squares()) {
-        ranks.broadcast(std::as_writable_bytes(sums.framebuffer.sums()));
-        ranks.broadcast(std::as_writable_bytes(sums.framebuffer.squares()));
-    }
+    if (sums.framebuffer.has_halves()) ranks.broadcast(std::as_writable_bytes(sums.framebuffer.sums()));
 }
 
 std::vector<RenderReport> gather(Ranks& ranks, const RenderReport& own) {

@@ -64,7 +64,7 @@ class RankSession : public RenderSession {
           progress_(settings.progress),
           framebuffer_(framebuffer),
           session_(engine.begin(scene, without_rounds(settings), framebuffer)),
-          is_pending_(framebuffer.has_squares() ? static_cast<std::size_t>(scene.pixel_count()) : 0) {
+          is_pending_(framebuffer.has_halves() ? static_cast<std::size_t>(scene.pixel_count()) : 0) {
         report_ = session_->report();
     }
 
@@ -80,7 +80,7 @@ class RankSession : public RenderSession {
         const std::int64_t places =
             all.pixels == nullptr ? scene_.pixel_count() : static_cast<std::int64_t>(all.pixels->size());
         const std::vector<WorkUnit> units = work_units({all.first_sample, all.end_sample}, places, ranks_.count());
-        if (framebuffer_.has_squares()) await(all.pixels);
+        if (framebuffer_.has_halves()) await(all.pixels);
 
         RenderReport report;
         const auto work = [&](std::int64_t i) {
@@ -103,7 +103,7 @@ class RankSession : public RenderSession {
     RenderReport collect() override {
         const double start = omp_get_wtime();
         RenderReport report = session_->merge();
-        if (framebuffer_.has_squares()) {
+        if (framebuffer_.has_halves()) {
             sum_everywhere(ranks_, framebuffer_, pending_);
             for (const std::uint32_t pixel : pending_) is_pending_[pixel] = false;
             pending_.clear();

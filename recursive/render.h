@@ -97,24 +97,25 @@ class alignas(64) CompiledLineTracer final : public LineTracer {
 
     void trace(const LinePixels& line, std::int64_t first, std::int64_t end, Addition addition,
                ProgressBatch& progress) override {
-        const bool has_squares = framebuffer_.has_squares();
+        const bool has_halves = framebuffer_.has_halves();
         const std::int64_t y = line[0] / width_;
         for (std::int64_t i = 0; i < line.count; ++i) {
             const std::int64_t pixel = line[i];
             const std::int64_t x = pixel - y * width_;
-            FixedRgb sum{};
-            FixedSquare square;
+            FixedRgb sums[2]{};
             cost_.start(tracer_);
             for (std::int64_t s = first; s < end; ++s) {
                 const FixedRgb& sample = tracer_.template sample<form>(x, y, s);
+                FixedRgb& sum =
+                    sums[has_halves ? half_of_sample(static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(s))
+                                    : 0];
                 for (int k = 0; k < 3; ++k) sum[k] += sample[k];
-                if (has_squares) square.add(tracer_.square(sample));
             }
             cost_.stop(tracer_, pixel);
             if (addition == Addition::Plain) {
-                add<Addition::Plain>(pixel, sum, square);
+                add<Addition::Plain>(pixel, sums);
             } else {
-                add<Addition::Atomic>(pixel, sum, square);
+                add<Addition::Atomic>(pixel, sums);
             }
             progress.add(end - first);
         }
@@ -129,9 +130,9 @@ class alignas(64) CompiledLineTracer final : public LineTracer {
 
   private:
     template <Addition addition>
-    void add(std::int64_t pixel, const FixedRgb& sum, const FixedSquare& square) {
-        framebuffer_.template add<addition>(pixel, sum);
-        if (framebuffer_.has_squares()) framebuffer_.template add_square<addition>(pixel, square);
+    void add(std::int64_t pixel, const FixedRgb (&sums)[2]) {
+        if (!framebuffer_.has_halves()) return framebuffer_.template add<addition>(pixel, sums[0]);
+        for (int half = 0; half < 2; ++half) framebuffer_.template add<addition>(2 * pixel + half, sums[half]);
     }
 
     std::int64_t width_;
@@ -167,7 +168,6 @@ class Session : public RenderSession {
             const TracerMaker<Scalar>& maker)
         : scene_(scene), settings_(settings), framebuffer_(framebuffer), make_(maker.make) {
         const double start = omp_get_wtime();
-        check_settings(settings, framebuffer);
         report_.threads.reserve(static_cast<std::size_t>(settings.threads));  // so that no report fails behind a render
         if (maker.check_stack != nullptr) {
             maker.check_stack(settings.depth, settings.threads);

@@ -85,7 +85,6 @@ class Tracer {
     [[nodiscard]] std::int64_t segments() const { return segments_; }
     [[nodiscard]] std::int64_t shadow_rays() const { return shadow_rays_; }
     [[nodiscard]] const Work& work() const { return work_; }
-    [[nodiscard]] FixedSquare square(const FixedRgb& sample) const { return converter_.square(sample); }
     [[nodiscard]] const SampleStatistics& statistics() const { return converter_.statistics(); }
     [[nodiscard]] std::uintptr_t deepest_stack() const { return deepest_stack_; }
 
@@ -182,7 +181,7 @@ class Tracer {
     void follow_shadow_ray(const Path& path, const Scattered<Scalar>& out, const LightPart<Scalar>& lights) {
         ++shadow_rays_;
         const Ray<Scalar> ray{out.start.origin, lights.light.direction, path.ray.time};
-        const Hit<Scalar> light{lights.light.t, lights.light.primitive_id};
+        const Occlusion<Scalar> light{lights.light.t, static_cast<std::int32_t>(lights.light.primitive_id)};
         if (!is_occluded<features>(scene_, ray, static_cast<std::int32_t>(out.start.leaving_id), light, work_))
             add(lights.radiance);
     }

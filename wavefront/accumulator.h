@@ -21,8 +21,7 @@ inline std::size_t accumulator_bytes(Accumulator kind, const Framebuffer& frameb
         case Accumulator::AtomicInt64:
             return 0;
         case Accumulator::PrivateInt64:
-            return static_cast<std::size_t>(threads) *
-                   ((sums + framebuffer.squares().size()) * sizeof(std::int64_t) + block_count_of(sums / 3));
+            return static_cast<std::size_t>(threads) * (sums * sizeof(std::int64_t) + block_count_of(sums / 3));
         case Accumulator::OwnedPlanarInt64:
         case Accumulator::AtomicPlanarInt64:
             return sums * sizeof(std::int64_t);

@@ -30,6 +30,20 @@ class Contributions {
         for (int i = 0; i < 3; ++i) packer.store(rgb_[i].data() + count_, radiance[i]);
         count_ += static_cast<std::size_t>(std::popcount(bits));
     }
+    /// The lanes set in `bits` of those of `from` that begin at `first`.
+    template <class Real>
+    RAYPOOL_INLINE void put_from(const Contributions& from, std::size_t first, unsigned bits) {
+        const auto load = [first]<class V>(const auto& column, V) {
+            if constexpr (Simd<Real>) {
+                return V(column.data() + first, stdx::element_aligned);
+            } else {
+                return column[first];
+            }
+        };
+        Vec3<Real> radiance;
+        for (int i = 0; i < 3; ++i) radiance[i] = load(from.rgb_[i], Real());
+        put<Real>(load(from.pixel_, Uint32<Real>()), radiance, bits);
+    }
     void clear() { count_ = 0; }
 
     [[nodiscard]] std::size_t count() const { return count_; }

@@ -42,9 +42,11 @@ std::unique_ptr<RenderSession> begin_any(const CompiledScene<Scalar>& scene, con
         throw InputError(
             "--accumulator: owned and owned-planar need --pool-scope thread, since no thread owns a pixel of a shared "
             "pool");
-    check_settings(settings, framebuffer);
-    if (framebuffer.has_squares() && adds_reals(pool.accumulator))
-        throw InputError("--accumulator: atomic-float and atomic-double keep no squares, which --target-error needs");
+    if (framebuffer.has_halves() && adds_reals(pool.accumulator))
+        throw InputError(
+            "--accumulator: sums of atomic-float and atomic-double depend on their order, and so would the samples "
+            "that "
+            "--target-error asks for");
     if (settings.depth == 0) return std::make_unique<DarkSession<Scalar>>(scene, settings.progress);
     try {
         return pool.width == StageWidth::Simd ? begin<WideReal<Scalar>>(scene, settings, pool, framebuffer)

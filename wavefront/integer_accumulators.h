@@ -15,18 +15,16 @@
 namespace raypool::wavefront {
 
 /// Where the three sums of a pixel are: side by side, as in the framebuffer, or each in a plane of its own. To compare
-/// them is the paper's "interleaved against three planar framebuffers". The sums of squares, where the framebuffer
-/// keeps them (null elsewhere), are apart from both, two digits a pixel.
+/// them is the paper's "interleaved against three planar framebuffers". Here and below a pixel is a cell of the
+/// framebuffer: half a pixel where it keeps halves apart.
 struct Interleaved {
     std::int64_t* sums;
-    std::int64_t* squares;
     [[nodiscard]] std::int64_t& at(std::size_t pixel, int k) const {
         return sums[3 * pixel + static_cast<std::size_t>(k)];
     }
 };
 struct Planar {
     std::int64_t* sums;
-    std::int64_t* squares;
     std::size_t pixel_count;
     [[nodiscard]] std::int64_t& at(std::size_t pixel, int k) const {
         return sums[static_cast<std::size_t>(k) * pixel_count + pixel];
@@ -64,30 +62,16 @@ class EightContributions {
 /// atomic addition takes longer than all the rest, and by far where threads want the same pixel.
 template <Addition addition, class Layout, class Scalar>
 void add_integers(const Layout& layout, const Contributions<Scalar>& contributions, SampleConverter& converter) {
-    const bool has_squares = layout.squares != nullptr;
     EightContributions<Scalar> eight(contributions, converter);
     for (std::size_t i = 0; i < contributions.count();) {
         const std::uint32_t pixel = contributions.pixel(i);
         FixedRgb sum{};
-        FixedSquare square;
         do {
             const FixedRgb fixed = eight.fixed(i);
             for (std::size_t k = 0; k < 3; ++k) sum[k] += fixed[k];
-            // A path that is not split contributions once, so that a contribution is a whole sample.
-            if (has_squares) square.add(converter.square(fixed));
         } while (++i < contributions.count() && contributions.pixel(i) == pixel);
         for (int k = 0; k < 3; ++k) add_to<addition>(layout.at(pixel, k), sum[static_cast<std::size_t>(k)]);
-        if (has_squares) {
-            std::int64_t* digits = layout.squares + 2 * std::size_t{pixel};
-            add_to<addition>(digits[0], square.low);
-            add_to<addition>(digits[1], square.high);
-        }
     }
-}
-
-/// The framebuffer's own sums of squares, or null.
-inline std::int64_t* squares_of(Framebuffer& framebuffer) {
-    return framebuffer.has_squares() ? framebuffer.squares().data() : nullptr;
 }
 
 /// Adds to sums of all threads: of Addition::Plain, atomically only where threads share pixels.
@@ -116,7 +100,7 @@ template <class Scalar, Addition addition>
 class InterleavedInt64 : public SharedInt64<Scalar, Interleaved, addition> {
   public:
     explicit InterleavedInt64(Framebuffer& framebuffer)
-        : SharedInt64<Scalar, Interleaved, addition>({framebuffer.sums().data(), squares_of(framebuffer)}) {}
+        : SharedInt64<Scalar, Interleaved, addition>({framebuffer.sums().data()}) {}
 };
 
 /// Adds to three planes, which merge() puts into the framebuffer.
@@ -132,14 +116,12 @@ class PlanarInt64 : public SharedInt64<Scalar, Planar, addition> {
         const std::size_t end = std::min((block + 1) * kBlockPixels, this->layout_.pixel_count);
         for (std::size_t pixel = block * kBlockPixels; pixel < end; ++pixel)
             for (int k = 0; k < 3; ++k)
-                Interleaved{sums_.data(), nullptr}.at(pixel, k) += std::exchange(this->layout_.at(pixel, k), 0);
+                Interleaved{sums_.data()}.at(pixel, k) += std::exchange(this->layout_.at(pixel, k), 0);
     }
 
   private:
     PlanarInt64(Framebuffer& framebuffer, Zeros<std::int64_t> planes)
-        : Base({planes.data(), squares_of(framebuffer), framebuffer.sums().size() / 3}),
-          sums_(framebuffer.sums()),
-          planes_(std::move(planes)) {}
+        : Base({planes.data(), framebuffer.cell_count()}), sums_(framebuffer.sums()), planes_(std::move(planes)) {}
 
     std::span<std::int64_t> sums_;
     Zeros<std::int64_t> planes_;
@@ -149,41 +131,32 @@ class PlanarInt64 : public SharedInt64<Scalar, Planar, addition> {
 template <class Scalar>
 class PrivateInt64 : public AccumulatorBase<Scalar> {
   public:
-    PrivateInt64(Framebuffer& framebuffer, int threads) : sums_(framebuffer.sums()), squares_(framebuffer.squares()) {
+    PrivateInt64(Framebuffer& framebuffer, int threads) : sums_(framebuffer.sums()) {
         parts_.reserve(static_cast<std::size_t>(threads));
         const std::vector<std::uint8_t> unused(block_count_of(sums_.size() / 3), 0);
-        for (int i = 0; i < threads; ++i)
-            parts_.push_back({Zeros<std::int64_t>(sums_.size() + squares_.size()), unused});
+        for (int i = 0; i < threads; ++i) parts_.push_back({Zeros<std::int64_t>(sums_.size()), unused});
     }
     void add(const Contributions<Scalar>& contributions, SampleConverter& converter, int thread) override {
         Part& part = parts_[static_cast<std::size_t>(thread)];
-        std::int64_t* sums = part.sums.data();
-        add_integers<Addition::Plain>(Interleaved{sums, squares_.empty() ? nullptr : sums + sums_.size()},
-                                      contributions, converter);
+        add_integers<Addition::Plain>(Interleaved{part.sums.data()}, contributions, converter);
         for (std::size_t i = 0; i < contributions.count(); ++i) part.is_used[contributions.pixel(i) / kBlockPixels] = 1;
     }
     [[nodiscard]] std::size_t block_count() const override { return block_count_of(sums_.size() / 3); }
     void merge(std::size_t block) override {
-        const std::size_t begin = block * kBlockPixels;
-        const std::size_t end = std::min(begin + kBlockPixels, sums_.size() / 3);
+        const std::size_t begin = 3 * block * kBlockPixels;
+        const std::size_t end = std::min(begin + 3 * kBlockPixels, sums_.size());
         for (Part& part : parts_) {
             if (std::exchange(part.is_used[block], std::uint8_t{0}) == 0) continue;
-            take(part.sums.data(), sums_, 3 * begin, 3 * end);
-            take(part.sums.data() + sums_.size(), squares_, squares_per_pixel() * begin, squares_per_pixel() * end);
+            for (std::size_t i = begin; i < end; ++i) sums_[i] += std::exchange(part.sums.data()[i], 0);
         }
     }
 
   private:
     struct Part {
-        Zeros<std::int64_t> sums;           ///< and behind them the squares
+        Zeros<std::int64_t> sums;
         std::vector<std::uint8_t> is_used;  ///< by block
     };
-    [[nodiscard]] std::size_t squares_per_pixel() const { return squares_.size() / (sums_.size() / 3); }
-    static void take(std::int64_t* from, std::span<std::int64_t> to, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) to[i] += std::exchange(from[i], 0);
-    }
     std::span<std::int64_t> sums_;
-    std::span<std::int64_t> squares_;
     std::vector<Part> parts_;  ///< by thread
 };
 

@@ -16,13 +16,10 @@ class IntersectStage {
     using Records = RayColumns<record_features(features), Scalar>;
     static constexpr int kRays = kLanes<Real>;
 
-    /// For batches of at most `most_records`.
-    IntersectStage(const SceneView<Scalar>& scene, Intersection intersection, std::size_t most_records)
-        : scene_(scene), intersection_(intersection), stream_(most_records, tree_depth(scene)) {}
-
-    static std::size_t bytes(const SceneView<Scalar>& scene, std::size_t most_records) {
-        return RayStream<Scalar>::bytes(most_records, tree_depth(scene));
-    }
+    /// For batches of at most `most_records`, as `lists` are, which outlive it.
+    IntersectStage(const SceneView<Scalar>& scene, Intersection intersection, std::size_t most_records,
+                   const StreamLists<Scalar>& lists)
+        : scene_(scene), intersection_(intersection), stream_(most_records), lists_(lists) {}
 
     /// Finds the closest hits of records [first, first + count), which then lie in stream().
     void run(const Records& records, std::size_t first, std::size_t count) {
@@ -48,10 +45,6 @@ class IntersectStage {
     [[nodiscard]] const Work& work() const { return work_; }
 
   private:
-    static int tree_depth(const SceneView<Scalar>& scene) {
-        return std::max(scene.sphere_tree.depth, scene.quad_tree.depth);
-    }
-
     void intersect_single(const Records& records, std::size_t first, std::size_t count) {
         for (std::size_t i = 0; i < count; ++i) {
             const RayRecord<Scalar> record = records.template load<Scalar>(first + i);
@@ -79,16 +72,17 @@ class IntersectStage {
             if (has_pairs) {
                 for (const auto& block : scene_.large_spheres) pair_with_all(block, records, first, count);
             }
+            const StreamHits<Scalar> hits = stream_.hits();
             if constexpr (features.planar)
-                detail::walk_stream<features, Real>(scene_.quad_tree, stream_, count, intersection_, work_);
-            detail::walk_stream<features, Real>(scene_.sphere_tree, stream_, count, intersection_, work_);
+                detail::walk_stream<features, Real>(scene_.quad_tree, hits, count, lists_, intersection_, work_);
+            detail::walk_stream<features, Real>(scene_.sphere_tree, hits, count, lists_, intersection_, work_);
         }
     }
 
     /// Spheres that every ray tests.
     void pair_with_all(const auto& block, const Records& records, std::size_t first,
                        std::size_t count) requires Simd<Real> {
-        SpherePairs<Scalar> pairs(block, stream_.lists());
+        SpherePairs<Scalar> pairs(block, lists_.data());
         for (std::size_t i = 0; i < count; i += kRays) {
             const RayRecord<Real> record = records.template load<Real>(first + i);
             const unsigned valid = count - i >= kRays ? (1U << kRays) - 1 : (1U << (count - i)) - 1;
@@ -96,7 +90,7 @@ class IntersectStage {
             pairs.template find<features, Real>(record.ray, signed_ids<Real>(record.leaving_id),
                                                 ray * Uint32<Real>(RayRow<Scalar>::kColumns), valid, work_);
         }
-        pairs.template meet<features, InBox::No, Real>({stream_.rows(), stream_.distance(), stream_.primitive_id()});
+        pairs.template meet<features, InBox::No, Real>(stream_.hits());
     }
 
     RAYPOOL_INLINE void store_row(std::size_t i, const WideRays<Real>& rays, const Hit<Real>& hit) requires Simd<Real> {
@@ -116,6 +110,7 @@ class IntersectStage {
     const SceneView<Scalar>& scene_;
     Intersection intersection_;
     RayStream<Scalar> stream_;
+    const StreamLists<Scalar>& lists_;
     Work work_;
 };
 

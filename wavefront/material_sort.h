@@ -21,10 +21,10 @@ class MaterialSort {
         return sort == Sort::None ? 0 : most_records * sizeof(double);
     }
 
-    /// Of records [first, first + count), whose hits are in `stream`.
+    /// Of records [first, first + count), whose hits are in `stream`. `lists` are scratch.
     template <class Records>
     void run(const SceneView<Scalar>& scene, Records& records, std::size_t first, std::size_t count,
-             RayStream<Scalar>& stream) {
+             RayStream<Scalar>& stream, const StreamLists<Scalar>& lists) {
         constexpr std::size_t kKinds = Material::kKindCount + 1;
         const auto kind = [&](std::size_t i) -> std::size_t {
             const std::int32_t id = stream.primitive_id()[i];
@@ -36,7 +36,7 @@ class MaterialSort {
         std::size_t place[kKinds + 1] = {};
         for (std::size_t i = 0; i < count; ++i) ++place[kind(i) + 1];
         for (std::size_t k = 1; k <= kKinds; ++k) place[k] += place[k - 1];
-        std::uint32_t* order = stream.lists();
+        std::uint32_t* order = lists.data();
         for (std::size_t i = 0; i < count; ++i) order[place[kind(i)]++] = static_cast<std::uint32_t>(i);
         auto* scratch = reinterpret_cast<std::byte*>(scratch_.data());
         records.permute(first, count, order, scratch);

@@ -26,7 +26,7 @@ RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, co
             const auto index = static_cast<std::size_t>(child);
             const auto& node = tree.nodes[index];
             Entry* const bottom = top;
-            for (int i = 0; i < kWidth; ++i) {
+            for (int i = 0; i < kWidth && node.child[i] != 0; ++i) {  // the root is no child
                 const Interval<Real> inside = child_interval<Real>(bounds, index, i, rays, hit.t);
                 const unsigned bits = mask_bits(is_active && inside.enter <= inside.exit);
                 work.count_boxes(node, i, mask_bits(is_active));

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "core/geometry/occlusion.h"
 #include "wavefront/wide_rays.h"
 
 namespace raypool::wavefront {
@@ -31,6 +32,17 @@ struct StreamHits {
         rows[ray].value[RayRow<Scalar>::kDistance] = distance[ray] = t;
         primitive_id[ray] = id;
     }
+};
+
+/// The same of shadow rays, whose distance and primitive are those of their light: a ray that anything else hides is
+/// done, and enters no box any more.
+template <class Scalar>
+struct ShadowHits : StreamHits<Scalar> {
+    RAYPOOL_INLINE void keep_closer(std::uint32_t ray, Scalar t, std::int32_t id) const {
+        if (Occlusion<Scalar>{this->distance[ray], this->primitive_id[ray]}.hides(t, id)) hide(ray);
+    }
+    RAYPOOL_INLINE void hide(std::uint32_t ray) const { this->set(ray, Scalar(-1), kNoPrimitive); }
+    [[nodiscard]] RAYPOOL_INLINE bool is_hidden(std::uint32_t ray) const { return this->distance[ray] < Scalar(0); }
 };
 
 /// Three columns from `first` on.

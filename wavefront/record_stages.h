@@ -31,6 +31,7 @@ struct RenderContext {
     const PoolSettings& pool;
     RandomSeed seed;
     FixedPoint fixed;
+    bool has_halves;  ///< of the framebuffer
     AccumulatorBase<Scalar>* accumulator;
 };
 

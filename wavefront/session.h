@@ -33,7 +33,12 @@ class PoolSession : public RenderSession {
           settings_(settings),
           pool_(with_capacity(pool, scene)),
           framebuffer_(framebuffer),
-          context_{scene,  settings_, pool_, random_seed(settings.seed, settings.sampler), framebuffer.fixed_point(),
+          context_{scene,
+                   settings_,
+                   pool_,
+                   random_seed(settings.seed, settings.sampler),
+                   framebuffer.fixed_point(),
+                   framebuffer.has_halves(),
                    nullptr} {
         const auto own = std::make_shared<PoolReport>();
         own->record_bytes = record_bytes;

@@ -74,9 +74,10 @@ class SpherePairs {
         }
     }
 
-    /// Tests the pairs exactly and takes the hits that are closer. The pairs are then used up.
+    /// Tests the pairs exactly and gives the hits that are closer to `hits`, StreamHits or ShadowHits. The pairs are
+    /// then used up.
     template <Features features, InBox in_box, class Real>
-    RAYPOOL_INLINE void meet(const StreamHits<Scalar>& hits) {
+    RAYPOOL_INLINE void meet(const auto& hits) {
         constexpr std::size_t kRays = kLanes<Real>;
         if (filled_ == 0) return;
         Scalar id[kShapes];

@@ -38,8 +38,9 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         : Base(context, most_overflow(context, most_records), thread),
           context_(context),
           thread_(thread),
-          intersect_(context.scene, context.pool.intersection, most_records),
-          shadow_(context.scene, context.pool.intersection, most_shadow_rays(context, most_records)),
+          lists_(most_list(context, most_records), tree_depth(context.scene)),
+          intersect_(context.scene, context.pool.intersection, most_records, lists_),
+          shadow_(context.scene, context.pool.intersection, most_shadow_rays(context, most_records), lists_),
           sort_(context.pool.sort, most_records),
           converter_(context.fixed) {
         contributions_.reserve(most_contributions(context, most_records));
@@ -47,11 +48,11 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
 
     /// The memory of one of these.
     static std::size_t bytes(const RenderContext<Scalar>& context, std::size_t most_records) {
-        return IntersectStage<features, Real, Work>::bytes(context.scene, most_records) +
-               Records::bytes(most_overflow(context, most_records)) +
+        return StreamLists<Scalar>::bytes(most_list(context, most_records), tree_depth(context.scene)) +
+               RayStream<Scalar>::bytes(most_records) + Records::bytes(most_overflow(context, most_records)) +
                MaterialSort<Scalar>::bytes(context.pool.sort, most_records) +
                Contributions<Scalar>::bytes(most_contributions(context, most_records)) +
-               Shadow::bytes(context.scene, most_shadow_rays(context, most_records));
+               Shadow::bytes(most_shadow_rays(context, most_records));
     }
 
     void begin() override {
@@ -114,7 +115,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
 
     /// By material. The settings must ask for it.
     void sort_by_material(Records& records, std::size_t first, std::size_t count) {
-        sort_.run(context_.scene, records, first, count, stream());
+        sort_.run(context_.scene, records, first, count, stream(), lists_);
     }
 
     /// Collects what ended as contributions and moves the survivors to the front. Returns how many they are.
@@ -165,8 +166,13 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
 
     static std::size_t most_shadow_rays(const RenderContext<Scalar>& context, std::size_t most_records) {
         const bool has_some = needed_features(context.scene.features, context.settings).lights;
-        return features.lights && has_some ? std::min(most_records + kBeamRays + kRays, RayStream<Scalar>::kMostRays)
-                                           : 0;
+        return features.lights && has_some ? std::min(most_records + kRays, RayStream<Scalar>::kMostRays) : 0;
+    }
+    static std::size_t most_list(const RenderContext<Scalar>& context, std::size_t most_records) {
+        return std::max(most_records, most_shadow_rays(context, most_records));
+    }
+    static int tree_depth(const SceneView<Scalar>& scene) {
+        return std::max(scene.sphere_tree.depth, scene.quad_tree.depth);
     }
     static std::size_t most_contributions(const RenderContext<Scalar>& context, std::size_t most_records) {
         return std::max(most_records, kMostContributions) + kBeamRays + kRays + most_shadow_rays(context, most_records);
@@ -217,7 +223,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         const unsigned hits = mask_bits(is_hit) & active;
         if (const unsigned misses = active & ~hits; misses != 0) {
             const Vec3<Real> sky = sky_radiance<Real>(context_.scene.sky, record.ray.direction);
-            contributions_.template put<Real>(record.key.pixel, product<Real>(record.throughput, sky), misses);
+            contributions_.template put<Real>(cell_of(record.key), product<Real>(record.throughput, sky), misses);
         }
         if (hits == 0) return 0;
 
@@ -237,13 +243,13 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
                     shadow_.run(contributions_, intersect_.work());
                     accumulate();
                 }
-                shadow_.add(record, out, lights, bits);
+                shadow_.add(record, out, lights, cell_of(record.key), bits, intersect_.work());
                 shadow_rays_ += std::popcount(bits);
             }
         }
         if constexpr (features.emissive) {
             if (const unsigned ends = mask_bits(out.is_emitter) & hits; ends != 0)
-                contributions_.template put<Real>(record.key.pixel, out.throughput, ends);
+                contributions_.template put<Real>(cell_of(record.key), out.throughput, ends);
         }
         const Uint32<Real> step = record.step + Uint32<Real>(1U);
         const Mask<Real> is_deepest = from_uint32<Real>(path_step::bounce<Uint32<Real>>(step)) >=
@@ -272,18 +278,24 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         return static_cast<std::size_t>(std::popcount(alive));
     }
 
+    [[nodiscard]] RAYPOOL_INLINE Uint32<Real> cell_of(const PathKey<Real>& key) const {
+        return raypool::cell_of<Uint32<Real>>(context_.has_halves, key.pixel, key.sample);
+    }
+
     /// Traces the shadow rays that wait, and adds what they bring.
     void trace_shadow_rays() {
         if constexpr (features.lights) {
-            if (shadow_.count() == 0) return;
+            const std::size_t rays = shadow_.count();
+            if (rays == 0) return;
             log_.start();
-            const std::size_t rays = shadow_.run(contributions_, intersect_.work());
+            shadow_.run(contributions_, intersect_.work());
             log_.stop(Stage::Shadow, rays);
         }
     }
 
     const RenderContext<Scalar>& context_;
     int thread_;
+    StreamLists<Scalar> lists_;
     IntersectStage<features, Real, Work> intersect_;
     Shadow shadow_;
     Contributions<Scalar> contributions_;

@@ -17,40 +17,53 @@
 
 namespace raypool::wavefront {
 
-/// Scratch of one thread for streams of up to `capacity` rays, and the hits they found.
+/// The lists of rays on the way down a tree: scratch, which streams of one thread share.
+template <class Scalar>
+class StreamLists {
+  public:
+    /// For streams of up to `capacity` rays.
+    StreamLists(std::size_t capacity, int tree_depth)
+        : lists_(std::make_unique_for_overwrite<std::uint32_t[]>(size(capacity, tree_depth))) {}
+    static std::size_t bytes(std::size_t capacity, int tree_depth) {
+        return size(capacity, tree_depth) * sizeof(std::uint32_t);
+    }
+    [[nodiscard]] std::uint32_t* data() const { return lists_.get(); }
+
+  private:
+    /// The list at the root, one for each child of a node on the way down, and a leaf's pairs.
+    static std::size_t size(std::size_t capacity, int tree_depth) {
+        return (capacity + kMostLanes) * (1 + kTreeWidth<Scalar> * (1 + static_cast<std::size_t>(tree_depth)));
+    }
+    static constexpr std::size_t kMostLanes = 16;
+
+    std::unique_ptr<std::uint32_t[]> lists_;
+};
+
+/// Up to `capacity` rays of one thread, and the hits they found.
 template <class Scalar>
 class RayStream {
   public:
     /// More rays than this have no numbers for their pairs with shapes (SpherePairs).
     static constexpr std::size_t kMostRays = SpherePairs<Scalar>::kMostRays;
 
-    RayStream(std::size_t capacity, int tree_depth)
-        : rows_(capacity + kLanesMost),
-          distance_(capacity + kLanesMost),
-          primitive_id_(capacity + kLanesMost),
-          lists_(std::make_unique_for_overwrite<std::uint32_t[]>(list_size(capacity, tree_depth))) {}
+    explicit RayStream(std::size_t capacity)
+        : rows_(capacity + kMostLanes), distance_(capacity + kMostLanes), primitive_id_(capacity + kMostLanes) {}
 
-    static std::size_t bytes(std::size_t capacity, int tree_depth) {
-        return (capacity + kLanesMost) * (sizeof(RayRow<Scalar>) + sizeof(Scalar) + sizeof(std::int32_t)) +
-               list_size(capacity, tree_depth) * sizeof(std::uint32_t);
+    static std::size_t bytes(std::size_t capacity) {
+        return (capacity + kMostLanes) * (sizeof(RayRow<Scalar>) + sizeof(Scalar) + sizeof(std::int32_t));
     }
 
     RayRow<Scalar>* rows() { return rows_.data(); }
     Scalar* distance() { return distance_.data(); }
     std::int32_t* primitive_id() { return primitive_id_.data(); }
-    std::uint32_t* lists() { return lists_.get(); }
+    StreamHits<Scalar> hits() { return {rows(), distance(), primitive_id()}; }
 
   private:
-    static constexpr std::size_t kLanesMost = 16;
-    /// The list at the root, one for each child of a node on the way down, and a leaf's pairs.
-    static std::size_t list_size(std::size_t capacity, int tree_depth) {
-        return (capacity + kLanesMost) * (1 + kTreeWidth<Scalar> * (1 + static_cast<std::size_t>(tree_depth)));
-    }
+    static constexpr std::size_t kMostLanes = 16;
 
     std::vector<RayRow<Scalar>> rows_;
     std::vector<Scalar> distance_;
     std::vector<std::int32_t> primitive_id_;
-    std::unique_ptr<std::uint32_t[]> lists_;
 };
 
 namespace detail {
@@ -58,7 +71,8 @@ namespace detail {
 /// Lists shorter than this are walked ray by ray. From a prototype on triangles, in which the length hardly mattered.
 inline constexpr std::size_t kShortList = 12;
 
-template <Features features, class Real, class Tree, class Work>
+/// `Hits` is StreamHits, for closest hits, or ShadowHits.
+template <Features features, class Real, class Tree, class Hits, class Work>
 class StreamWalk {
     using S = ScalarOf<Real>;
     using Row = RayRow<S>;
@@ -68,11 +82,8 @@ class StreamWalk {
     static constexpr std::int32_t kLargestId = std::numeric_limits<std::int32_t>::max();
 
   public:
-    StreamWalk(const Tree& tree, RayStream<S>& stream, Intersection intersection, Work& work)
-        : tree_(tree),
-          hits_{stream.rows(), stream.distance(), stream.primitive_id()},
-          intersection_(intersection),
-          work_(work) {}
+    StreamWalk(const Tree& tree, const Hits& hits, Intersection intersection, Work& work)
+        : tree_(tree), hits_(hits), intersection_(intersection), work_(work) {}
 
     /// Takes list[0 .. count), which has room for a register beyond its end; `free` is scratch behind it.
     void visit(std::int32_t child, std::uint32_t* list, std::size_t count, std::uint32_t* free) {
@@ -96,8 +107,10 @@ class StreamWalk {
         const raypool::detail::TreeBounds<features, Tree> bounds(tree_);
         const auto& node = tree_.nodes[index];
         const std::size_t room = count + kRays;  // a register is stored whole behind the last ray
+        int children = 0;                        // the lanes in use come first; the root is no child
         std::uint32_t* end[kWidth];
-        for (int i = 0; i < kWidth; ++i) end[i] = free + static_cast<std::size_t>(i) * room;
+        for (; children < kWidth && node.child[children] != 0; ++children)
+            end[children] = free + static_cast<std::size_t>(children) * room;
         for (std::size_t first = 0; first < count; first += kRays) {
             Real row[8];
             load_rows_at<8, Real>(hits_.rows->value, list + first, row);
@@ -112,7 +125,7 @@ class StreamWalk {
                 limit = select(lanes_before<Real>(count - first), limit, Real(-1));  // enters no box
             }
             const Uint32<Real> offset(list + first, stdx::element_aligned);
-            for (int i = 0; i < kWidth; ++i) {
+            for (int i = 0; i < children; ++i) {
                 const Interval<Real> inside = child_interval<Real>(bounds, index, i, rays, limit);
                 const unsigned bits = mask_bits(inside.enter <= inside.exit);
                 work_.count_boxes(node, i, valid);
@@ -125,7 +138,7 @@ class StreamWalk {
         const S* ray = hits_.rows[list[0] / Row::kColumns].value;
         int order[kWidth];
         S place[kWidth];
-        for (int i = 0; i < kWidth; ++i) {
+        for (int i = 0; i < children; ++i) {
             place[i] = 0;
             for (int axis = 0; axis < 3; ++axis)
                 place[i] += (node.bounds[axis][0][i] + node.bounds[axis][1][i]) * ray[Row::kDirection + axis];
@@ -134,10 +147,11 @@ class StreamWalk {
             order[k] = i;
         }
         if constexpr (kCountsLists) ++work_.level;
-        for (const int i : order) {
+        std::uint32_t* const next_free = free + static_cast<std::size_t>(children) * room;
+        for (int k = 0; k < children; ++k) {
+            const int i = order[k];
             std::uint32_t* const begin = free + static_cast<std::size_t>(i) * room;
-            if (end[i] != begin)
-                visit(node.child[i], begin, static_cast<std::size_t>(end[i] - begin), free + kWidth * room);
+            if (end[i] != begin) visit(node.child[i], begin, static_cast<std::size_t>(end[i] - begin), next_free);
         }
         if constexpr (kCountsLists) --work_.level;
     }
@@ -180,25 +194,32 @@ class StreamWalk {
         const Ray<S> ray{columns(row, Row::kOrigin), columns(row, Row::kDirection), row[Row::kTime]};
         const SpreadRay<Boxes> spread(ray, inverse_of_scale<S>(columns(row, Row::kScale)),
                                       static_cast<std::int32_t>(bits_of<S>(row[Row::kLeaving])));
-        Hit<S> hit{hits_.distance[i], hits_.primitive_id[i]};
-        raypool::detail::walk<features, Boxes>(tree_, spread, hit, work_, child);
-        hits_.set(i, hit.t, static_cast<std::int32_t>(hit.primitive_id));
+        if constexpr (std::same_as<Hits, ShadowHits<S>>) {
+            Occlusion<S> light{hits_.distance[i], hits_.primitive_id[i]};
+            raypool::detail::walk<features, Boxes>(tree_, spread, light, work_, child);
+            if (light.is_hidden) hits_.hide(i);
+        } else {
+            Hit<S> hit{hits_.distance[i], hits_.primitive_id[i]};
+            raypool::detail::walk<features, Boxes>(tree_, spread, hit, work_, child);
+            hits_.set(i, hit.t, static_cast<std::int32_t>(hit.primitive_id));
+        }
     }
 
     const Tree& tree_;
-    StreamHits<S> hits_;
+    const Hits hits_;
     Intersection intersection_;
     Work& work_;
 };
 
-template <Features features, class Real, class Tree, class Work>
-void walk_stream(const Tree& tree, RayStream<ScalarOf<Real>>& stream, std::size_t count, Intersection intersection,
-                 Work& work) {
+/// Takes the first `count` rays of `hits` down a tree. `lists` are for as many.
+template <Features features, class Real, class Tree, class Hits, class Work>
+void walk_stream(const Tree& tree, const Hits& hits, std::size_t count, const StreamLists<ScalarOf<Real>>& lists,
+                 Intersection intersection, Work& work) {
     if (tree.nodes.empty() || count == 0) return;
     using Row = RayRow<ScalarOf<Real>>;
-    std::uint32_t* list = stream.lists();
+    std::uint32_t* list = lists.data();
     for (std::size_t i = 0; i < count; ++i) list[i] = static_cast<std::uint32_t>(i * Row::kColumns);
-    StreamWalk<features, Real, Tree, Work>(tree, stream, intersection, work)
+    StreamWalk<features, Real, Tree, Hits, Work>(tree, hits, intersection, work)
         .visit(0, list, count, list + count + kLanes<Real>);
 }
 

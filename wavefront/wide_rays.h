@@ -142,6 +142,22 @@ RAYPOOL_INLINE void intersect_all(const Blocks& blocks, const WideRays<Real>& ra
     }
 }
 
+/// Which of some shadow rays such shapes hide from their lights, hits on which are `light`.
+template <Features features, class Blocks, class Real, class Work>
+RAYPOOL_INLINE Mask<Real> hidden_by_any(const Blocks& blocks, const WideRays<Real>& rays, int count,
+                                        const Hit<Real>& light, Work& work) {
+    Mask<Real> is_hidden(false);
+    for (const auto& block : blocks) {
+        for_each_shape(block, [&](int lane) {
+            work.count_primitives(count);
+            Hit<Real> hit = light;
+            const Mask<Real> is_before = intersect_lane<features, InBox::No, Real>(block, lane, rays, hit);
+            is_hidden = is_hidden || (is_before && as_mask<Real>(light.primitive_id != Int<Real>(block.id[lane])));
+        });
+    }
+    return is_hidden;
+}
+
 /// Where the rays are inside child `lane` of a node, before `limit`.
 template <class Real, class Bounds>
 RAYPOOL_INLINE Interval<Real> child_interval(const Bounds& bounds, std::size_t node, int lane,

@@ -127,16 +127,14 @@ class alignas(64) PacketTracer final : public recursive::LineTracer {
             const FixedRgb sample =
                 converter_.template convert<float>(vec3<float>(channel[0][i], channel[1][i], channel[2][i]));
             if (addition_ == Addition::Plain) {
-                add<Addition::Plain>(pixel_[i], sample);
+                framebuffer_.template add<Addition::Plain>(cell(i), sample);
             } else {
-                add<Addition::Atomic>(pixel_[i], sample);
+                framebuffer_.template add<Addition::Atomic>(cell(i), sample);
             }
         }
     }
-    template <Addition addition>
-    void add(std::int64_t pixel, const FixedRgb& sample) {
-        framebuffer_.template add<addition>(pixel, sample);
-        if (framebuffer_.has_squares()) framebuffer_.template add_square<addition>(pixel, converter_.square(sample));
+    [[nodiscard]] std::int64_t cell(int lane) const {
+        return cell_of(framebuffer_.has_halves(), pixel_[lane], sample_[lane]);
     }
 
     const CompiledScene<float>& scene_;
@@ -189,7 +187,7 @@ MakeTracer packet_tracers(const CompiledScene<float>& scene) {
 std::unique_ptr<RenderSession> EmbreeEngine::begin(const CompiledScene<float>& scene, const RenderSettings& settings,
                                                    Framebuffer& framebuffer) const {
     if (settings.split_depth > 0) throw InputError(name() + ": follows one path at a time; --split-depth must be 0");
-    if (settings.light_sampling != LightSampling::None)
+    if (needed_light_sampling(scene.features, settings) != LightSampling::None)
         throw InputError(name() + ": traces no shadow rays; --light-sampling must be none");
     if (settings.count_work) throw InputError(name() + ": Embree does not say which boxes it tests");
     if (settings.cost_image != nullptr) throw InputError(name() + ": has no cost of a pixel");

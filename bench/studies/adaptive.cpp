@@ -71,15 +71,14 @@ RenderSettings settings_of(std::uint64_t seed, int threads) {
 
 Made make_adaptive(const Engine& engine, const CompiledScene<float>& scene, RenderSettings settings, double error) {
     settings.end_sample = kMostSamples;
-    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(kMostSamples, scene.max_radiance),
-                            Moments::Second);
+    Framebuffer framebuffer(scene.width, scene.height, fixed_point(scene, settings, kMostSamples), Halves::Apart);
     Made made;
     made.image.report = render_adaptively(engine, scene, settings, error, framebuffer, made.adaptive);
     made.image.hash = framebuffer.hash();
     const double scale = 1 / framebuffer.fixed_point().scale();
-    for (std::size_t i = 0; i < framebuffer.sums().size(); ++i)
-        made.image.values.push_back(static_cast<double>(framebuffer.sums()[i]) * scale /
-                                    made.adaptive.sample_counts[i / 3]);
+    for (std::size_t pixel = 0; pixel < made.adaptive.sample_counts.size(); ++pixel)
+        for (const std::int64_t sum : framebuffer.sum(pixel))
+            made.image.values.push_back(static_cast<double>(sum) * scale / made.adaptive.sample_counts[pixel]);
     return made;
 }
 

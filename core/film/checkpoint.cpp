@@ -26,7 +26,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kFormat = "raypool sums";
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr std::size_t kChecksumLength = 16;
 constexpr std::size_t kMostHeaderBytes = 1 << 20;
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 32;
@@ -52,7 +52,7 @@ json header_of(const Checkpoint& sums) {
             {"height", framebuffer.height()},
             {"fraction_bits", fixed.fraction_bits},
             {"limit_bits", std::ilogb(fixed.limit)},
-            {"has_squares", framebuffer.has_squares()},
+            {"has_halves", framebuffer.has_halves()},
             {"has_counts", !sums.sample_counts.empty()}};
 }
 
@@ -115,10 +115,10 @@ Checkpoint parsed(const json& header, std::string_view payload) {
     };
     const std::int64_t width = within("width", 1, kMostPixels);
     const std::int64_t height = within("height", 1, kMostPixels / width);
-    const bool has_squares = header.at("has_squares").get<bool>();
+    const bool has_halves = header.at("has_halves").get<bool>();
     const bool has_counts = header.at("has_counts").get<bool>();
     const auto pixels = static_cast<std::size_t>(width * height);
-    const std::size_t bytes = pixels * ((has_squares ? 5 : 3) * sizeof(std::int64_t) + (has_counts ? 4 : 0));
+    const std::size_t bytes = pixels * ((has_halves ? 6 : 3) * sizeof(std::int64_t) + (has_counts ? 4 : 0));
     if (payload.size() != bytes)
         throw InputError(fmt::format("{} bytes of sums in place of {}", payload.size(), bytes));
 
@@ -129,7 +129,7 @@ Checkpoint parsed(const json& header, std::string_view payload) {
                     {},
                     std::vector<std::int32_t>(has_counts ? pixels : 0),
                     static_cast<int>(within("rounds", 0, 1 << 30)),
-                    Framebuffer(width, height, fixed, has_squares ? Moments::Second : Moments::First)};
+                    Framebuffer(width, height, fixed, has_halves ? Halves::Apart : Halves::Together)};
     for (const json& pair : header.at("key")) sums.key.emplace_back(printable(pair.at(0)), printable(pair.at(1)));
     for (const json& pair : header.at("ranges")) {
         const SampleRange range{whole(pair.at(0)), whole(pair.at(1))};
@@ -139,7 +139,6 @@ Checkpoint parsed(const json& header, std::string_view payload) {
         sums.ranges.push_back(range);
     }
     take(payload, sums.framebuffer.sums());
-    take(payload, sums.framebuffer.squares());
     take(payload, std::span(sums.sample_counts));
     if (std::any_of(sums.sample_counts.begin(), sums.sample_counts.end(), [](std::int32_t count) { return count < 0; }))
         throw InputError("a pixel has fewer than no samples");
@@ -168,7 +167,7 @@ void check_same_render(const Checkpoint& found, const Checkpoint& wanted) {
         throw InputError(fmt::format("of a render with {}", differs));
     const Framebuffer& a = found.framebuffer;
     const Framebuffer& b = wanted.framebuffer;
-    const auto is_adaptive = [](const Checkpoint& sums) { return sums.framebuffer.has_squares(); };
+    const auto is_adaptive = [](const Checkpoint& sums) { return sums.framebuffer.has_halves(); };
     if (a.width() != b.width() || a.height() != b.height() || a.fixed_point().limit != b.fixed_point().limit ||
         is_adaptive(found) != is_adaptive(wanted) || (!is_adaptive(found) && !found.sample_counts.empty()))
         throw InputError("its sums are not of the render that it says");
@@ -218,7 +217,6 @@ std::vector<SampleRange> gaps(const std::vector<SampleRange>& ranges, std::int64
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& sums) {
     std::string text = json_text(header_of(sums), JsonLayout::OneLine) + "\n";
     append<std::int64_t>(text, sums.framebuffer.sums());
-    append<std::int64_t>(text, sums.framebuffer.squares());
     append<std::int32_t>(text, sums.sample_counts);
     text += checksum(text);
     write_whole(path, std::as_bytes(std::span(text)));

@@ -33,7 +33,7 @@ struct SampleRange {
 
 /// Raised when the same settings come to make another image, so that sums of before and of after are not added up. The
 /// test of the golden hashes (tests/equivalence/golden_test.cpp) tells when.
-inline constexpr int kImageVersion = 2;
+inline constexpr int kImageVersion = 3;
 
 /// Everything that fixes the image, by name: two renders with the same key add up, others must not.
 using ImageKey = std::vector<std::pair<std::string, std::string>>;

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include "core/base/error.h"
+
 namespace raypool {
 
 namespace {
@@ -15,12 +17,20 @@ int ceil_log2(double value) {
     return mantissa == 0.5 ? exponent - 1 : exponent;
 }
 constexpr double kLeastMaxRadiance = 0x1p-20;  ///< a black scene still has a step
+
+/// Cells have numbers of 32 bits.
+std::size_t cells_of(std::int64_t pixels, Halves halves) {
+    if (halves == Halves::Together) return static_cast<std::size_t>(pixels);
+    if (pixels > std::int64_t{1} << 31U)
+        throw InputError(fmt::format("--target-error: takes an image of at most 2^31 pixels, not {}", pixels));
+    return 2 * static_cast<std::size_t>(pixels);
+}
 }  // namespace
 
-FixedPoint FixedPoint::make(std::int64_t spp, double max_radiance, std::int64_t parts) {
+FixedPoint FixedPoint::make(std::int64_t spp, double max_radiance, double parts) {
     const int limit_bits = ceil_log2(std::max(max_radiance, kLeastMaxRadiance)) + 1;
     const int spp_bits = ceil_log2(static_cast<double>(std::max(spp, kExtensibleSamples)));
-    const int part_bits = ceil_log2(static_cast<double>(parts));
+    const int part_bits = ceil_log2(parts);
     return {62 - limit_bits - spp_bits - part_bits, std::ldexp(1.0, limit_bits)};
 }
 
@@ -39,33 +49,33 @@ FixedRgb SampleConverter::convert_bad(const Eigen::Vector3d& radiance) {
     return fixed;
 }
 
-Framebuffer::Framebuffer(std::int64_t width, std::int64_t height, const FixedPoint& fixed, Moments moments)
-    : width_(width),
-      height_(height),
-      fixed_(fixed),
-      sums_(static_cast<std::size_t>(3 * width * height)),
-      squares_(moments == Moments::Second ? static_cast<std::size_t>(2 * width * height) : 0) {}
+Framebuffer::Framebuffer(std::int64_t width, std::int64_t height, const FixedPoint& fixed, Halves halves)
+    : width_(width), height_(height), fixed_(fixed), halves_(halves), sums_(3 * cells_of(width * height, halves)) {}
+
+FixedRgb Framebuffer::sum(std::size_t pixel) const {
+    if (!has_halves()) return {sums_[3 * pixel], sums_[3 * pixel + 1], sums_[3 * pixel + 2]};
+    const std::int64_t* both = &sums_[6 * pixel];
+    return {both[0] + both[3], both[1] + both[4], both[2] + both[5]};
+}
 
 std::string Framebuffer::hash() const {
     const std::array<std::int64_t, 3> shape{width_, height_, fixed_.fraction_bits};
     const XXH64_hash_t seed = XXH3_64bits(shape.data(), sizeof(shape));
-    const XXH64_hash_t first = XXH3_64bits_withSeed(sums_.data(), sums_.size() * sizeof(std::int64_t), seed);
-    if (!has_squares()) return fmt::format("{:016x}", first);
-    return fmt::format("{:016x}", XXH3_64bits_withSeed(squares_.data(), squares_.size() * sizeof(std::int64_t), first));
+    return fmt::format("{:016x}", XXH3_64bits_withSeed(sums_.data(), sums_.size() * sizeof(std::int64_t), seed));
 }
 
 Image Framebuffer::image(std::int64_t sample_count) const {
     Image image(width_, height_);
     const double scale = 1 / (fixed_.scale() * static_cast<double>(std::max<std::int64_t>(sample_count, 1)));
-    std::transform(sums_.begin(), sums_.end(), image.rgb.begin(),
-                   [scale](std::int64_t sum) { return static_cast<float>(static_cast<double>(sum) * scale); });
+    for (std::size_t i = 0; i < image.rgb.size(); ++i)
+        image.rgb[i] = static_cast<float>(static_cast<double>(sum(i / 3)[i % 3]) * scale);
     return image;
 }
 
 Image Framebuffer::image(std::span<const std::int32_t> sample_counts) const {
     Image image(width_, height_);
-    for (std::size_t i = 0; i < sums_.size(); ++i)
-        image.rgb[i] = static_cast<float>(static_cast<double>(sums_[i]) /
+    for (std::size_t i = 0; i < image.rgb.size(); ++i)
+        image.rgb[i] = static_cast<float>(static_cast<double>(sum(i / 3)[i % 3]) /
                                           (fixed_.scale() * static_cast<double>(sample_counts[i / 3])));
     return image;
 }

@@ -4,9 +4,8 @@
 /// the same bits. A thread that adds must own the pixel meanwhile, or add atomically.
 /// The step is 2^-k with k chosen so that no render can overflow: spp samples of the scene's greatest radiance fit. It
 /// is the same for all renders of up to 16,384 samples a pixel.
-/// On request it also keeps the sum of squares of the samples of each pixel, exact and free of order too: the second
-/// moment, from which adaptive.h estimates what error is left. It has no step of its own, so that no precision is lost
-/// whatever else is in the scene.
+/// On request it keeps the sums of two halves of each pixel's samples apart. Their difference tells what error is left
+/// (adaptive.h), is exact and free of order too, and does not ask in how many parts a sample comes.
 #pragma once
 
 #include <array>
@@ -18,6 +17,7 @@
 #include <vector>
 
 #include "core/image/image.h"
+#include "core/math/path.h"
 #include "core/math/real_wide.h"
 #include "core/math/vec.h"
 
@@ -39,20 +39,6 @@ struct SampleStatistics {
 /// A sum or a sample in fixed point.
 using FixedRgb = std::array<std::int64_t, 3>;
 
-__extension__ using Int128 = __int128;
-
-/// r^2 + g^2 + b^2 of a sample in fixed point, or a sum of them: high 2^k + low, with k the fixed point's
-/// square_digit_bits(). Digits are added each by itself and without a carry, so that they can be added atomically.
-struct FixedSquare {
-    std::int64_t low = 0;
-    std::int64_t high = 0;
-
-    void add(const FixedSquare& other) {
-        low += other.low;
-        high += other.high;
-    }
-};
-
 /// How radiance becomes an integer.
 struct FixedPoint {
     int fraction_bits = 0;
@@ -61,19 +47,12 @@ struct FixedPoint {
     /// Renders of up to this many samples a pixel have one step, so that one of them can be extended to any other.
     static constexpr std::int64_t kExtensibleSamples = 16384;
 
-    /// For up to `spp` samples a pixel that come in up to `parts` parts, each channel of a part at most max_radiance.
-    static FixedPoint make(std::int64_t spp, double max_radiance, std::int64_t parts = 1);
+    /// For up to `spp` samples a pixel that come in parts, each channel of a part at most max_radiance, and of a sample
+    /// at most `parts` times that.
+    static FixedPoint make(std::int64_t spp, double max_radiance, double parts = 1);
 
     bool operator==(const FixedPoint&) const = default;
     [[nodiscard]] double scale() const { return std::ldexp(1.0, fraction_bits); }
-    /// The bits of a square's low digit. With 2^s samples at most, no channel of a sample is above 2^(62 - s), and no
-    /// square above 3 * 2^(124 - 2 s). With 63 - s bits in the low digit, the sum of the low digits is below
-    /// 2^s * 2^(63 - s) = 2^63, and that of the high ones at most 2^s * 3 * 2^(124 - 2 s) / 2^(63 - s) = 3 * 2^61.
-    [[nodiscard]] int square_digit_bits() const { return 1 + std::ilogb(limit) + fraction_bits; }
-    /// A sum of squares as one number, in units of the squared step; below 2^(126 - s).
-    [[nodiscard]] Int128 whole(const FixedSquare& square) const {
-        return Int128{square.high} * (Int128{1} << square_digit_bits()) + square.low;
-    }
 };
 
 /// Plain additions are right as long as no two threads add to a pixel.
@@ -89,16 +68,13 @@ void add_to(Sum& sum, Sum value) {
     }
 }
 
-/// Whether a framebuffer keeps second moments.
-enum class Moments : bool { First, Second };
+/// Whether a framebuffer has one sum a pixel, or keeps those of two halves of its samples apart.
+enum class Halves : bool { Together, Apart };
 
 /// Turns samples into integers, keeping an account of bad ones. One per thread.
 class SampleConverter {
   public:
-    explicit SampleConverter(const FixedPoint& fixed)
-        : scale_(fixed.scale()),
-          limit_(fixed.limit),
-          square_digit_bits_(static_cast<unsigned>(fixed.square_digit_bits())) {}
+    explicit SampleConverter(const FixedPoint& fixed) : scale_(fixed.scale()), limit_(fixed.limit) {}
 
     /// Rounds to nearest. Zero for a sample that is not finite.
     template <class Scalar>
@@ -119,13 +95,6 @@ class SampleConverter {
         for (int k = 0; k < 3; ++k) is_good = is_good && x86::round_eight(channel[k], scale_, limit_, fixed[k]);
         return is_good;
     }
-    /// r^2 + g^2 + b^2 of a whole sample, for the sum of squares: exact.
-    [[nodiscard]] FixedSquare square(const FixedRgb& sample) const {
-        const Int128 square =
-            Int128{sample[0]} * sample[0] + Int128{sample[1]} * sample[1] + Int128{sample[2]} * sample[2];
-        return {static_cast<std::int64_t>(square) & ((std::int64_t{1} << square_digit_bits_) - 1),
-                static_cast<std::int64_t>(square >> square_digit_bits_)};
-    }
     [[nodiscard]] const SampleStatistics& statistics() const { return statistics_; }
 
   private:
@@ -133,37 +102,31 @@ class SampleConverter {
 
     double scale_;
     double limit_;
-    unsigned square_digit_bits_;
     SampleStatistics statistics_;
 };
 
 class Framebuffer {
   public:
-    Framebuffer(std::int64_t width, std::int64_t height, const FixedPoint& fixed, Moments moments = Moments::First);
+    Framebuffer(std::int64_t width, std::int64_t height, const FixedPoint& fixed, Halves halves = Halves::Together);
 
     [[nodiscard]] std::int64_t width() const { return width_; }
     [[nodiscard]] std::int64_t height() const { return height_; }
     [[nodiscard]] const FixedPoint& fixed_point() const { return fixed_; }
+    [[nodiscard]] bool has_halves() const { return halves_ == Halves::Apart; }
+    /// The number of pixels, or twice that: cell c has the sums 3 c to 3 c + 2.
+    [[nodiscard]] std::size_t cell_count() const { return sums_.size() / 3; }
 
+    /// Adds a sample or a part of one; the cell is cell_of() its pixel.
     template <Addition addition = Addition::Plain>
-    void add(std::int64_t pixel, const FixedRgb& sample) {
-        for (int i = 0; i < 3; ++i) add_to<addition>(sums_[static_cast<std::size_t>(3 * pixel + i)], sample[i]);
+    void add(std::int64_t cell, const FixedRgb& sample) {
+        for (int i = 0; i < 3; ++i) add_to<addition>(sums_[static_cast<std::size_t>(3 * cell + i)], sample[i]);
     }
-    /// Only where it keeps second moments.
-    template <Addition addition = Addition::Plain>
-    void add_square(std::int64_t pixel, const FixedSquare& square) {
-        add_to<addition>(squares_[static_cast<std::size_t>(2 * pixel)], square.low);
-        add_to<addition>(squares_[static_cast<std::size_t>(2 * pixel + 1)], square.high);
-    }
-    [[nodiscard]] FixedSquare square(std::size_t pixel) const { return {squares_[2 * pixel], squares_[2 * pixel + 1]}; }
-    [[nodiscard]] bool has_squares() const { return !squares_.empty(); }
-    /// Two a pixel, its low digit and its high one; empty without second moments.
-    [[nodiscard]] std::span<std::int64_t> squares() { return squares_; }
-    [[nodiscard]] std::span<const std::int64_t> squares() const { return squares_; }
     [[nodiscard]] std::span<std::int64_t> sums() { return sums_; }
     [[nodiscard]] std::span<const std::int64_t> sums() const { return sums_; }
+    /// The sum of all samples of a pixel.
+    [[nodiscard]] FixedRgb sum(std::size_t pixel) const;
 
-    /// 16 hexadecimal digits over the size, the step, every sum and, where kept, every sum of squares (XXH3).
+    /// 16 hexadecimal digits over the size, the step and every sum (XXH3).
     [[nodiscard]] std::string hash() const;
 
     /// The mean of `sample_count` samples a pixel, linear radiance.
@@ -175,8 +138,16 @@ class Framebuffer {
     std::int64_t width_;
     std::int64_t height_;
     FixedPoint fixed_;
+    Halves halves_;
     std::vector<std::int64_t> sums_;
-    std::vector<std::int64_t> squares_;
 };
+
+/// Where a sample of a pixel is added: to the pixel itself, or to a half of it.
+template <class U>
+RAYPOOL_INLINE U cell_of(bool has_halves, const U& pixel, const U& sample) {
+    if (!has_halves) [[likely]]
+        return pixel;
+    return pixel + pixel + half_of_sample<U>(pixel, sample);
+}
 
 }  // namespace raypool

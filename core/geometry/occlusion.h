@@ -6,25 +6,36 @@
 
 namespace raypool {
 
+/// Whether a light is hidden: by another shape that closest_hit() would prefer to a hit on it at distance t.
+template <class Scalar>
+struct Occlusion {
+    Scalar t;               ///< of the light; infinity of what is behind all shapes
+    std::int32_t light_id;  ///< kNoPrimitive of what is no shape
+    bool is_hidden = false;
+
+    [[nodiscard]] RAYPOOL_INLINE bool hides(Scalar distance, std::int32_t id) const {
+        return id != light_id && (distance < t || (distance == t && id < light_id));
+    }
+    RAYPOOL_INLINE void keep_closer(Scalar distance, std::int32_t id) { is_hidden = is_hidden || hides(distance, id); }
+};
+
 namespace detail {
 
-/// Whether a shape of the tree is met before `light`.
+/// From `child` of the tree on, until something hides the light.
 template <Features features, class Real, class Block, class Work>
-RAYPOOL_INLINE bool is_met(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tree, const SpreadRay<Real>& ray,
-                           const Hit<ScalarOf<Real>>& light, Work& work) {
-    if (tree.nodes.empty()) return false;
+RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tree, const SpreadRay<Real>& ray,
+                         Occlusion<ScalarOf<Real>>& light, Work& work, std::int32_t child = 0) {
+    if (tree.nodes.empty()) return;
     const TreeBounds<features, TreeView<Block, ScalarOf<Real>, kLanes<Real>>> bounds(tree);
     std::int32_t stack[kTraversalStack<kLanes<Real>>];
     std::int32_t* top = stack;
-    *top++ = 0;
-    while (top != stack) {
-        const std::int32_t child = *--top;
+    *top++ = child;
+    while (top != stack && !light.is_hidden) {
+        child = *--top;
         if (child < 0) {
             const Block& block = tree.blocks[~child];
             work.count(block);
-            Hit<ScalarOf<Real>> hit = light;
-            intersect_block<features, InBox::Yes, Real>(block, ray, hit);
-            if (hit.primitive_id != light.primitive_id) return true;
+            intersect_block<features, InBox::Yes, Real>(block, ray, light);
             continue;
         }
         const auto index = static_cast<std::size_t>(child);
@@ -37,25 +48,22 @@ RAYPOOL_INLINE bool is_met(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& 
         for (unsigned bits = mask_bits(inside.enter <= inside.exit); bits != 0; bits &= bits - 1)
             *top++ = node.child[std::countr_zero(bits)];
     }
-    return false;
 }
 
 }  // namespace detail
 
-/// Whether anything lies before a light that the ray is to reach: a shape that closest_hit() would prefer to a hit on
-/// the light at `light.t`. The order in which shapes are tested does not show.
+/// Whether anything lies before a light that the ray is to reach. The order in which shapes are tested does not show.
 template <Features features, class Scalar, class Work>
 [[gnu::noinline]] bool is_occluded(const ShapeView<Scalar>& scene, const Ray<Scalar>& ray, std::int32_t leaving_id,
-                                   const Hit<Scalar>& light, Work& work) {
+                                   Occlusion<Scalar> light, Work& work) {
     using Real = Wide<Scalar, kTreeWidth<Scalar>>;
     const SpreadRay<Real> spread(ray, ray_inverse<Scalar>(ray.direction), leaving_id);
-    Hit<Scalar> hit = light;
-    detail::test_untreed<features, Real>(scene, spread, hit, work);
-    if (hit.primitive_id != light.primitive_id) return true;
+    detail::test_untreed<features, Real>(scene, spread, light, work);
     if constexpr (features.planar) {
-        if (detail::is_met<features, Real>(scene.quad_tree, spread, light, work)) return true;
+        if (!light.is_hidden) detail::walk<features, Real>(scene.quad_tree, spread, light, work);
     }
-    return detail::is_met<features, Real>(scene.sphere_tree, spread, light, work);
+    if (!light.is_hidden) detail::walk<features, Real>(scene.sphere_tree, spread, light, work);
+    return light.is_hidden;
 }
 
 }  // namespace raypool

@@ -139,26 +139,23 @@ class TreeBounds {
     const Motion* motion_[3];  ///< null along an axis on which nothing moves
 };
 
-/// Takes the closest of the lanes in `bits`.
-template <class Real>
-RAYPOOL_INLINE void keep_closest(const Real& t, const std::int32_t* id, unsigned bits, Hit<ScalarOf<Real>>& hit) {
+/// The lanes in `bits`. What is found is a Hit, or else whatever has a distance t beyond which nothing matters, and
+/// keep_closer().
+template <class Real, class Found>
+RAYPOOL_INLINE void keep_closest(const Real& t, const std::int32_t* id, unsigned bits, Found& found) {
     alignas(64) ScalarOf<Real> distance[kLanes<Real>];
     t.copy_to(distance, stdx::vector_aligned);
     for (; bits != 0; bits &= bits - 1) {
         const int i = std::countr_zero(bits);
-        const bool is_tie_won = distance[i] == hit.t && id[i] < hit.primitive_id;
-        if (distance[i] < hit.t || is_tie_won) {
-            hit.t = distance[i];
-            hit.primitive_id = id[i];
-        }
+        found.keep_closer(distance[i], id[i]);
     }
 }
 
-template <Features features, InBox in_box, class Real, class Block>
+template <Features features, InBox in_box, class Real, class Block, class Found>
 requires requires(Block b) {
     b.radius;
 }
-RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& ray, Hit<ScalarOf<Real>>& hit) {
+RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& ray, Found& hit) {
     Vec3<Real> center = load<Real>(block.center);
     if constexpr (features.motion) center = center_at<Real>(center, load<Real>(block.motion), ray.time);
     const Real t = sphere_distance<Real>(ray.origin, ray.direction, center, load<Real>(block.radius),
@@ -174,11 +171,11 @@ RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& r
     keep_closest<Real>(t, block.id, mask_bits(is_closer), hit);
 }
 
-template <Features features, InBox in_box, class Real, class Block>
+template <Features features, InBox in_box, class Real, class Block, class Found>
 requires requires(Block b) {
     b.dual_u;
 }
-RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& ray, Hit<ScalarOf<Real>>& hit) {
+RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& ray, Found& hit) {
     const Mask<Real> leaving = is_leaving<Real>(block.group, ray.leaving_id);
     const Vec3<Real> point = load<Real>(block.point);
     const Vec3<Real> normal = load<Real>(block.normal);
@@ -198,9 +195,9 @@ RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& r
 }
 
 /// The shapes that are in no tree.
-template <Features features, class Real, class Work>
-RAYPOOL_INLINE void test_untreed(const ShapeView<ScalarOf<Real>>& scene, const SpreadRay<Real>& ray,
-                                 Hit<ScalarOf<Real>>& hit, Work& work) {
+template <Features features, class Real, class Found, class Work>
+RAYPOOL_INLINE void test_untreed(const ShapeView<ScalarOf<Real>>& scene, const SpreadRay<Real>& ray, Found& hit,
+                                 Work& work) {
     const auto test_all = [&](const auto& blocks) {
         for (const auto& block : blocks) {
             work.count(block);

@@ -34,4 +34,16 @@ RAYPOOL_INLINE U reflected_branch(const U& step) {
 }
 }  // namespace path_step
 
+/// To which of two halves a sample of a pixel belongs, 0 or 1: of samples 2k and 2k + 1 one to each, by chance, so that
+/// halves are alike also where samples are stratified by their number.
+template <class U>
+RAYPOOL_INLINE U half_of_sample(const U& pixel, const U& sample) {
+    U x = (sample >> 1) * U(0x9e3779b9U) + pixel * U(0x85ebca6bU);
+    x ^= x >> 15;
+    x *= U(0x2c1b3c6dU);
+    x ^= x >> 12;
+    x *= U(0x297a2d39U);
+    return (x >> 31) ^ (sample & U(1U));
+}
+
 }  // namespace raypool

@@ -72,6 +72,10 @@ class LanePacker {
     RAYPOOL_INLINE void store(T* target, const V& v) const {
         if (bits_ != 0) *target = v;
     }
+    template <class V>
+    RAYPOOL_INLINE V pack(const V& v) const {
+        return v;
+    }
 
   private:
     unsigned bits_;

@@ -245,11 +245,20 @@ class LanePacker<Real> {
     template <class V, class T>
     RAYPOOL_INLINE void store(T* target, const V& v) const {
         if constexpr (kIsPermuted) {
-            using Register = IntegerRegister<V>;
-            const Register packed = x86::permute32(std::bit_cast<Register>(v), std::bit_cast<Register>(order_));
-            std::bit_cast<V>(packed).copy_to(target, stdx::element_aligned);
+            pack(v).copy_to(target, stdx::element_aligned);
         } else {
             compress_store(target, v, bits_);
+        }
+    }
+    template <class V>
+    RAYPOOL_INLINE V pack(const V& v) const {
+        if constexpr (kIsPermuted) {
+            using Register = IntegerRegister<V>;
+            return std::bit_cast<V>(x86::permute32(std::bit_cast<Register>(v), std::bit_cast<Register>(order_)));
+        } else {
+            alignas(64) typename V::value_type lanes[V::size()];
+            compress_store(lanes, v, bits_);
+            return V(lanes, stdx::element_aligned);
         }
     }
 

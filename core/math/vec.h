@@ -75,6 +75,12 @@ template <class Real>
 struct Hit {
     Real t = Real(kInfinity<Real>);
     Int<Real> primitive_id = Int<Real>(kNoPrimitive);
+
+    /// Takes a hit of a single ray that is closer, or as close and of a smaller id.
+    RAYPOOL_INLINE void keep_closer(Real distance, std::int32_t id) {
+        const bool is_tie_won = distance == t && id < primitive_id;
+        if (distance < t || is_tie_won) *this = {distance, id};
+    }
 };
 
 }  // namespace raypool

@@ -11,17 +11,23 @@ namespace raypool {
 
 namespace {
 
-/// Variance of a sample, mean over channels: (n sum of squares - square of the sum) / (n (n - 1)). The difference is
-/// exact, since it may be tiny beside both: with 2^s samples at most, each term is below 2^126.
+/// Variance of a sample, mean over channels, from the sums a and b of two halves of n samples: both estimate one mean.
+/// With n_a and n_b samples, n_b a - n_a b has the expectation 0 and the variance n n_a n_b times that of a sample. The
+/// difference is exact, since it may be tiny beside both.
 double variance(const Framebuffer& framebuffer, std::size_t pixel, std::int64_t n) {
-    Int128 difference = framebuffer.fixed_point().whole(framebuffer.square(pixel)) * n;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Int128 sum = framebuffer.sums()[3 * pixel + k];
-        difference -= sum * sum;
+    __extension__ using Int128 = __int128;
+    const bool last_in_b = half_of_sample(static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(n - 1)) == 1;
+    const std::int64_t n_b = n / 2 + (n % 2 == 1 && last_in_b ? 1 : 0);
+    const std::int64_t n_a = n - n_b;
+    const std::int64_t* sums = &framebuffer.sums()[6 * pixel];
+    double squares = 0;
+    for (int k = 0; k < 3; ++k) {
+        const auto difference = static_cast<double>(Int128{sums[k]} * n_b - Int128{sums[3 + k]} * n_a);
+        squares += difference * difference;
     }
     const double scale = framebuffer.fixed_point().scale();
-    const auto count = static_cast<double>(n);
-    return static_cast<double>(difference) / (scale * scale) / (count * (count - 1)) / 3;
+    return squares / (scale * scale) / (static_cast<double>(n) * static_cast<double>(n_a) * static_cast<double>(n_b)) /
+           3;
 }
 
 /// The mean over the pixels around each pixel, as far as they are in the image: its own value is left out, so that its
@@ -50,13 +56,17 @@ std::vector<double> means_around(const std::vector<double>& values, std::int64_t
 
 /// What a pixel of `pixel_count` adds to the squared error of the image by one sample of `samples` that is as bright as
 /// can be: no sample adds more to its estimate.
-double greatest_share(double max_radiance, std::int64_t samples, std::size_t pixel_count) {
-    const double share = max_radiance / static_cast<double>(samples);
+double greatest_share(double greatest_sample, std::int64_t samples, std::size_t pixel_count) {
+    const double share = greatest_sample / static_cast<double>(samples);
     return share * share / static_cast<double>(pixel_count);
 }
 
-/// The most that a squared error is which was estimated from terms of which none is above `share`.
-double most_expected(double squared_error, double share) {
+/// The most that the squared error of an image is that was estimated as `squared_error`. No single sample adds more to
+/// the estimate than `share`. But where a pixel has many that do, what they add together goes by the square of a
+/// difference, which is as wide as a normal one's is: the variance of the estimate is up to 2/3 of the sum of the
+/// pixels' squared shares, which is squared_error^2 / effective_pixels, and adds to what `share` makes of it.
+double most_expected(double squared_error, double share, double effective_pixels) {
+    if (effective_pixels > 0) share += 2.0 / 3 * squared_error / effective_pixels;
     return share > 0 ? share * greatest_expectation(squared_error / share) : squared_error;
 }
 
@@ -69,16 +79,17 @@ constexpr double kLeastPlanned = 0.5;
 /// small.
 constexpr double kLeastOfMean = 0.25;
 
-/// Where a pixel with `count` samples may stop next: a quarter more, so that few samples are taken for nothing. One
-/// that wants more goes on to at most twice what it has before it is looked at again.
+/// Where a pixel with `count` samples may stop next: a quarter more, so that few samples are taken for nothing, and an
+/// even number, for equal halves. One that wants more goes on to at most twice what it has before it is looked at
+/// again.
 std::int64_t next_stop(std::int64_t count) {
-    return count == 0 ? AdaptivePlan::kFirstSamples : count + (count + 3) / 4;
+    return count == 0 ? AdaptivePlan::kFirstSamples : count + (count + 7) / 8 * 2;
 }
 
 }  // namespace
 
 ErrorEstimate estimate_error(const Framebuffer& framebuffer, const std::vector<std::int32_t>& sample_counts,
-                             double max_radiance) {
+                             double greatest_sample) {
     ErrorEstimate estimate;
     std::vector<double> variances(sample_counts.size());
     double sum = 0;
@@ -92,11 +103,11 @@ ErrorEstimate estimate_error(const Framebuffer& framebuffer, const std::vector<s
     }
     const auto pixel_count = static_cast<double>(variances.size());
     estimate.fewest_samples = *std::min_element(sample_counts.begin(), sample_counts.end());
-    const double share = greatest_share(max_radiance, estimate.fewest_samples, variances.size());
+    const double share = greatest_share(greatest_sample, estimate.fewest_samples, variances.size());
     estimate.rmse = std::sqrt(sum / pixel_count);
-    estimate.most_rmse = std::sqrt(most_expected(sum / pixel_count, share));
-    estimate.unseen_rmse = std::sqrt(most_expected(0, share));
     if (sum_of_squares > 0) estimate.effective_pixels = sum * sum / sum_of_squares;
+    estimate.most_rmse = std::sqrt(most_expected(sum / pixel_count, share, estimate.effective_pixels));
+    estimate.unseen_rmse = std::sqrt(most_expected(0, share, 0));
 
     const std::vector<double> around = means_around(variances, framebuffer.width(), framebuffer.height());
     estimate.deviation.resize(around.size());
@@ -106,7 +117,7 @@ ErrorEstimate estimate_error(const Framebuffer& framebuffer, const std::vector<s
 }
 
 const ErrorEstimate& AdaptivePlan::estimate(const Framebuffer& framebuffer) {
-    return estimate_ = estimate_error(framebuffer, counts_, target_.max_radiance);
+    return estimate_ = estimate_error(framebuffer, counts_, target_.greatest_sample);
 }
 
 TargetStatus AdaptivePlan::status() const {
@@ -117,8 +128,8 @@ TargetStatus AdaptivePlan::status() const {
 
 bool AdaptivePlan::can_be_proved() const {
     const double squared_target = target_.error * target_.error;
-    const double share = greatest_share(target_.max_radiance, target_.most_samples, counts_.size());
-    return most_expected(kLeastPlanned * squared_target, share) <= squared_target;
+    const double share = greatest_share(target_.greatest_sample, target_.most_samples, counts_.size());
+    return most_expected(kLeastPlanned * squared_target, share, estimate_.effective_pixels) <= squared_target;
 }
 
 std::vector<SamplePass> AdaptivePlan::next(const Framebuffer& framebuffer) {
@@ -133,8 +144,8 @@ std::vector<SamplePass> AdaptivePlan::next(const Framebuffer& framebuffer) {
     double floor = 0;                 // of the samples of a pixel
     if (can_be_proved()) {
         // Beside what is planned there must be room for light that no sample has found.
-        const double share = greatest_share(target_.max_radiance, estimate_.fewest_samples, counts_.size());
-        planned = 2 * squared_target - most_expected(squared_target, share);
+        const double share = greatest_share(target_.greatest_sample, estimate_.fewest_samples, counts_.size());
+        planned = 2 * squared_target - most_expected(squared_target, share, estimate_.effective_pixels);
         if (planned < kLeastPlanned * squared_target) {
             planned = kLeastPlanned * squared_target;
             floor = static_cast<double>(twice_the_fewest);

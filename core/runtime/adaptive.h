@@ -1,7 +1,9 @@
 /// Adaptive sampling: more samples for the pixels that need them, until the image is as exact as asked.
 ///
-/// A render goes in passes. Before each, the variance of every pixel is estimated from the framebuffer's sums and sums
-/// of squares, and the pixels that have too few samples get more. Of all ways to reach an error, samples in proportion
+/// A render goes in passes. Before each, the variance of every pixel is estimated from the framebuffer's sums of two
+/// halves of its samples, and the pixels that have too few samples get more. Halves tell less than each sample's square
+/// would, one degree of freedom a pixel, but what is asked is about many pixels, and a sample may come in any number of
+/// parts (light sampling, splitting). Of all ways to reach an error, samples in proportion
 /// to each pixel's standard deviation are the fewest (Neyman, "On the Two Different Aspects of the Representative
 /// Method", 1934); samples that bring every pixel to the same error would be no fewer than everywhere the same number.
 ///
@@ -13,7 +15,7 @@
 /// that has found no light would look finished, and the image would darken. So a pixel's deviation is that of the
 /// pixels around it, without its own. And a variance that is estimated says nothing of light that no sample has found:
 /// the target counts as reached only where the limit of the error (ErrorEstimate::most_rmse) keeps it, which holds for
-/// anything up to the scene's greatest radiance.
+/// anything up to the greatest sample that the scene allows.
 #pragma once
 
 #include <cstdint>
@@ -23,22 +25,22 @@
 
 namespace raypool {
 
-/// What is left of the error, and where: from second moments.
+/// What is left of the error, and where.
 struct ErrorEstimate {
     std::vector<float> deviation;  ///< of a sample, by pixel, root mean square over channels: of the pixels around it
     double rmse = 0;               ///< of the image as it is, as far as its samples differ
     /// The RMSE is below it with a probability of 99 %, light that no sample has found included.
     double most_rmse = 0;
     double unseen_rmse = 0;           ///< what light that no sample has found adds is below it, likewise
-    std::int64_t flat_pixels = 0;     ///< pixels whose samples are all equal, so that their variance is not known
+    std::int64_t flat_pixels = 0;     ///< pixels whose halves are equal, so that their variance is not known
     double effective_pixels = 0;      ///< the number of pixels that make the estimate, were they alike
     std::int32_t fewest_samples = 0;  ///< of a pixel
 };
 
-/// Each pixel of `framebuffer`, which keeps second moments, has the given number of samples, at least 2. No sample has
-/// more than `max_radiance` in any channel.
+/// Each pixel of `framebuffer`, which keeps halves apart, has the given number of samples, at least 2. No sample has
+/// more than `greatest_sample` in any channel.
 ErrorEstimate estimate_error(const Framebuffer& framebuffer, const std::vector<std::int32_t>& sample_counts,
-                             double max_radiance);
+                             double greatest_sample);
 
 /// Samples [first, end) of some pixels.
 struct SamplePass {
@@ -55,7 +57,7 @@ const char* to_string(TargetStatus status);
 /// What an adaptive render is asked for.
 struct AdaptiveTarget {
     double error = 0;               ///< RMSE, > 0, in radiance
-    double max_radiance = 0;        ///< no sample of the scene has more in any channel
+    double greatest_sample = 0;     ///< no sample has more in any channel
     std::int64_t most_samples = 2;  ///< of a pixel, at least 2
 };
 
@@ -101,7 +103,7 @@ class AdaptivePlan {
 
   private:
     /// Whether some number of samples that is allowed would prove that the target is reached, whatever light no sample
-    /// has found. It depends on the target, the scene's greatest radiance and the size of the image.
+    /// has found. It depends on the target, the greatest sample and the size of the image.
     [[nodiscard]] bool can_be_proved() const;
     /// Brings pixels that have fewer samples than wanted to a next stop.
     std::vector<SamplePass> passes(const std::vector<float>& wanted);
@@ -112,7 +114,7 @@ class AdaptivePlan {
     ErrorEstimate estimate_;
 };
 
-/// Renders into a framebuffer that keeps second moments until the plan is satisfied. After each round, go_on() says
+/// Renders into a framebuffer that keeps halves apart until the plan is satisfied. After each round, go_on() says
 /// whether to; what it sees, the framebuffer and the plan, is what a render can go on from.
 template <class Scalar, class GoOn>
 RenderReport render_adaptively(const Engine& engine, const CompiledScene<Scalar>& scene, const RenderSettings& settings,
@@ -133,7 +135,7 @@ RenderReport render_adaptively(const Engine& engine, const CompiledScene<Scalar>
 template <class Scalar>
 RenderReport render_adaptively(const Engine& engine, const CompiledScene<Scalar>& scene, const RenderSettings& settings,
                                double target_error, Framebuffer& framebuffer, AdaptiveReport& adaptive) {
-    AdaptivePlan plan({target_error, scene.max_radiance, settings.end_sample}, scene.width, scene.height);
+    AdaptivePlan plan({target_error, greatest_sample(scene, settings), settings.end_sample}, scene.width, scene.height);
     RenderReport report = render_adaptively(engine, scene, settings, plan, framebuffer, [] { return true; });
     adaptive = plan.report();
     return report;

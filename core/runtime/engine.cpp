@@ -26,17 +26,6 @@ RenderReport render_whole(RenderSession& session, const RenderSettings& settings
     return session.finish();
 }
 
-void check_settings(const RenderSettings& settings, const Framebuffer& framebuffer) {
-    if (framebuffer.has_squares() && settings.split_depth > 0)
-        throw InputError(
-            "--split-depth: a sample that splits reaches its pixel in parts, so its square, which --target-error "
-            "needs, is not known");
-    if (framebuffer.has_squares() && settings.light_sampling != LightSampling::None)
-        throw InputError(
-            "--light-sampling: a sample reaches its pixel in parts, so its square, which --target-error needs, is not "
-            "known");
-}
-
 void refuse_double() {
     throw InputError("--precision double: this build has none; configure it with -DRAYPOOL_BUILD_DOUBLE=ON");
 }

@@ -120,20 +120,36 @@ inline LightSampling needed_light_sampling(const Features& scene, const ImageSet
     return scene.lights ? settings.light_sampling : LightSampling::None;
 }
 
-/// For up to `spp` samples a pixel of a render. With light sampling a sample comes in parts, one at each hit and one at
-/// its end. Each is at most the scene's greatest radiance, but by LightSampling::Light, which has no bound: its parts
-/// are cut where they are as much as a whole sample may be, and so may be all branches of a split path.
+/// How much the parts of a sample add up to at most, beside the greatest of them: with light sampling a path brings one
+/// at each hit that samples lights, and one at its end. By LightSampling::Mis none brings more than the path's
+/// throughput times the scene's greatest radiance; roulette may raise throughput to 1. LightSampling::Light has no such
+/// bound, nor has a split path's sum.
 template <class Scalar>
-FixedPoint fixed_point(const SceneView<Scalar>& scene, const ImageSettings& settings, std::int64_t spp) {
+double most_parts(const SceneView<Scalar>& scene, const ImageSettings& settings) {
     const LightSampling sampling = needed_light_sampling(scene.features, settings);
-    if (sampling == LightSampling::None) return FixedPoint::make(spp, scene.max_radiance);
-    const std::int64_t parts = std::clamp(settings.depth, 1, kMostSampledHits + 1);
-    if (sampling == LightSampling::Mis) return FixedPoint::make(spp, scene.max_radiance, parts);
-    return FixedPoint::make(spp, scene.max_radiance * static_cast<double>(parts), parts << settings.split_depth);
+    if (sampling == LightSampling::None) return 1;
+    const double parts = std::clamp(settings.depth, 1, kMostSampledHits + 1);
+    if (sampling == LightSampling::Light) return std::ldexp(parts, settings.split_depth);
+    const double albedo = scene.max_diffuse_albedo;
+    return settings.roulette || albedo >= 1 ? parts : (1 - std::pow(albedo, parts)) / (1 - albedo);
 }
 
-/// What engines refuse alike, as an InputError.
-void check_settings(const RenderSettings& settings, const Framebuffer& framebuffer);
+/// For up to `spp` samples a pixel of a render. Parts by LightSampling::Light are cut where they are as much as a whole
+/// sample may be by Mis.
+template <class Scalar>
+FixedPoint fixed_point(const SceneView<Scalar>& scene, const ImageSettings& settings, std::int64_t spp) {
+    const bool is_cut = needed_light_sampling(scene.features, settings) == LightSampling::Light;
+    const double brightest_part = is_cut ? std::clamp(settings.depth, 1, kMostSampledHits + 1) : 1;
+    return FixedPoint::make(spp, scene.max_radiance * brightest_part, most_parts(scene, settings));
+}
+
+/// No sample carries more to the image in any channel, all of its parts together.
+template <class Scalar>
+double greatest_sample(const SceneView<Scalar>& scene, const ImageSettings& settings) {
+    const bool is_cut = needed_light_sampling(scene.features, settings) == LightSampling::Light;
+    const double greatest_part = is_cut ? fixed_point(scene, settings, 1).limit : scene.max_radiance;
+    return greatest_part * most_parts(scene, settings);
+}
 
 /// Makes the calling thread treat denormal numbers as zero while it lives; engines hold one in every thread. A path
 /// whose throughput fades would otherwise cost hundreds of times more for light that cannot be seen.

@@ -131,8 +131,9 @@ struct SceneView : ShapeView<Scalar> {
     std::int64_t height = 0;
     Camera<Scalar> camera;
     Sky<Scalar> sky;
-    double max_radiance = 0;  ///< no path carries more to the image in any channel
-    double max_albedo = 0;    ///< no hit leaves a path more of its throughput in any channel
+    double max_radiance = 0;        ///< no path carries more to the image in any channel
+    double max_albedo = 0;          ///< no hit leaves a path more of its throughput in any channel
+    double max_diffuse_albedo = 0;  ///< no hit on a diffuse surface does
 
     std::span<const SurfaceRow<Scalar>> surfaces;
     std::span<const TextureRow<Scalar>> textures;

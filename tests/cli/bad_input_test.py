@@ -167,8 +167,6 @@ class BadOption(CommandTest):
 
     def test_for_what_adaptive_sampling_cannot_know_is_refused(self):
         adaptive = ("render", "scene.json", "--target-error", 0.1)
-        self.assert_refused(*adaptive, "--split-depth", 1, named=["--split-depth", "--target-error"])
-        self.assert_refused(*adaptive, "--light-sampling", "mis", named=["--light-sampling", "--target-error"])
         self.assert_refused(*adaptive, "--samples", "0:5", named=["--samples", "--target-error"])
         self.assert_refused(*adaptive, "--spp", 1, named=["--spp", "--target-error"])
         self.assert_refused(*adaptive, "--engine", "wavefront", "--pool-scope", "shared", "--accumulator", "atomic-float",

@@ -139,6 +139,7 @@ class CheckpointTest(CheckpointCase):
         self.run_well(*lamp, "--samples", "0:5", "--checkpoint", "a.sums", "--engine", "recursive")
         self.run_well(*lamp, "--samples", "5:12", "--checkpoint", "b.sums", "--engine", "wavefront")
         self.assertEqual(self.hash_of(self.run_well("merge", "b.sums", "a.sums")), expected)
+        self.assert_refused(*lamp[:-1], "none", "--checkpoint", "a.sums", "--resume", named=["a.sums", "light_sampling"])
         self.assertEqual(self.hash_of(self.run_well(*lamp, "--checkpoint", "a.sums", "--resume")), expected)
 
     def test_samples_that_cannot_be_extended_exactly_are_refused(self):
@@ -251,8 +252,7 @@ class CheckpointTest(CheckpointCase):
         self.assert_refused(*RENDER, "--samples", "5:9", "--checkpoint", "c.sums", "--resume",
                             named=["c.sums", "0 to 1", "--samples"])
         for setting, value in (("seed", 5), ("depth", 7), ("width", 121), ("split-depth", 1),
-                               ("precision", "double"), ("sampler", "sobol"), ("light-sampling", "mis"),
-                               ("target-error", 0.1)):
+                               ("precision", "double"), ("sampler", "sobol"), ("target-error", 0.1)):
             self.assert_refused(*render(**{setting: value}), "--checkpoint", "c.sums", "--resume",
                                 named=["c.sums", setting.replace("-", "_")])
         self.assert_refused("render", "cornell", *RENDER[2:], "--checkpoint", "c.sums", "--resume", named="scene")

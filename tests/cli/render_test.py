@@ -92,7 +92,10 @@ class Small(CommandTest):
                       self.run_well("render", "hidden.json", "--spp", 1, "--stats", "s.json").stdout)
         sums = json.loads((self.folder / "s.json").read_text())["sums"]
         self.assertEqual(sums["dimmest_light"], 1e-6)
-        self.assertEqual(sums["step"], 2.0**-27)  # a radiance of 1e6 (2^21 is twice that) and 2^14 samples, in 62 bits
+        # A radiance of 1e6 (2^21 is twice that), 2^14 samples, and parts of a sample that add up to 5 of it, in 62 bits.
+        self.assertEqual(sums["step"], 2.0**-24)
+        self.run_well("render", "hidden.json", "--spp", 1, "--light-sampling", "none", "--stats", "s.json")
+        self.assertEqual(json.loads((self.folder / "s.json").read_text())["sums"]["step"], 2.0**-27)
         self.assertIn("coarse", self.run_well("info", "hidden.json").stdout)
 
     def test_empty_scene_is_its_background(self):
@@ -146,9 +149,30 @@ class Render(CommandTest):
                 self.assertEqual(stats["shadow_rays"] > 0, mode != "none")
         self.assertEqual([len(of_mode) for of_mode in hashes.values()], [1, 1, 1])
         self.assertEqual(len(set.union(*hashes.values())), 3)
-        summary = self.run_well("render", "small_lamp", "--width", 8, "--spp", 1, "--light-sampling", "mis").stdout
+        summary = self.run_well("render", "small_lamp", "--width", 24, "--spp", 4, "--stats", "s.json").stdout
         self.assertIn("depth 50, light sampling mis, seed 0", summary)
-        self.run_well("compare", "small_lamp", "--width", 16, "--spp", 1, "--light-sampling", "mis", "--check")
+        self.assertEqual({json.loads((self.folder / "s.json").read_text())["hash"]}, hashes["mis"])
+        self.run_well("compare", "small_lamp", "--width", 16, "--spp", 1, "--check")
+
+    def test_light_sampling_is_none_in_a_scene_without_lights(self):
+        hashes = set()
+        for mode in ("none", "light", "mis"):
+            stats = self.stats("--spp", 1, "--light-sampling", mode)
+            hashes.add(stats["hash"])
+            self.assertEqual(stats["settings"]["light_sampling"], "none")
+            self.assertEqual(stats["shadow_rays"], 0)
+        self.assertEqual(len(hashes), 1)
+
+    def test_target_error_holds_for_samples_that_come_in_parts(self):
+        for options in ((), ("--split-depth", 1), ("--light-sampling", "light")):
+            hashes = set()
+            for engine in ("recursive", "wavefront"):
+                self.run_well("render", "cornell", "--width", 20, "--target-error", 0.2, "--spp", 4096, "--engine", engine,
+                              "--stats", "s.json", *options)
+                stats = json.loads((self.folder / "s.json").read_text())
+                self.assertEqual(stats["adaptive"]["target"], "reached")
+                hashes.add(stats["hash"])
+            self.assertEqual(len(hashes), 1)
 
     def test_says_what_the_depth_cuts_off_at_most(self):
         stats = self.stats("--spp", 1, "--depth", 3)

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/base/error.h"
+#include "core/runtime/settings_text.h"
 #include "tests/small_render.h"
 #include "wavefront/engine.h"
 
@@ -23,8 +24,8 @@ struct Adapted {
 
 template <class Scalar>
 Adapted adapt(const Engine& engine, const CompiledScene<Scalar>& scene, const RenderSettings& settings, double error) {
-    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, scene.max_radiance),
-                            Moments::Second);
+    Framebuffer framebuffer(scene.width, scene.height, fixed_point(scene, settings, settings.end_sample),
+                            Halves::Apart);
     AdaptiveReport adaptive;
     const RenderReport report = render_adaptively(engine, scene, settings, error, framebuffer, adaptive);
     return {framebuffer.hash(), adaptive.sample_counts, report.paths()};
@@ -86,12 +87,41 @@ TEST(AdaptiveRender, ThatIsStoppedTellsTheErrorOfWhatItHas) {
     const CompiledScene<float> scene = compile<float>(small_scene("half_sky", 16));
     RenderSettings settings;
     settings.end_sample = 80;
-    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(80, scene.max_radiance), Moments::Second);
+    Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(80, scene.max_radiance), Halves::Apart);
     AdaptivePlan plan({1e-6, scene.max_radiance, 80}, scene.width, scene.height);
     render_adaptively(recursive::RecursiveEngine(), scene, settings, plan, framebuffer, [] { return false; });
     EXPECT_EQ(plan.rounds(), 1);
     EXPECT_GT(plan.rmse(), 0);
     EXPECT_EQ(plan.rmse(), estimate_error(framebuffer, plan.sample_counts(), scene.max_radiance).rmse);
+}
+
+/// Samples that come in parts: of lights that are sampled, and of paths that are split.
+TEST(AdaptiveEquivalence, HoldsForSamplesThatComeInParts) {
+    for (const auto& [name, error] : {std::pair{"caustic", 0.5}, {"cornell", 0.15}}) {
+        const CompiledScene<float> scene = compile<float>(small_scene(name, 16));
+        for (const LightSampling sampling : {LightSampling::None, LightSampling::Light, LightSampling::Mis}) {
+            for (const int split_depth : {0, 2}) {
+                RenderSettings settings;
+                settings.end_sample = 80;
+                settings.light_sampling = sampling;
+                settings.split_depth = split_depth;
+                const Adapted expected = adapt(recursive::RecursiveEngine(), scene, settings, error);
+                EXPECT_EQ(adapt(recursive::IterativeEngine(), scene, settings, error), expected);
+                for (const int threads : {1, 3}) {
+                    settings.threads = threads;
+                    for (const std::int64_t rays : {17, 8192})
+                        ASSERT_EQ(adapt(WavefrontEngine({.capacity = rays}), scene, settings, error), expected)
+                            << name << ' ' << to_string(sampling) << ' ' << split_depth << ' ' << rays;
+                    ASSERT_EQ(adapt(WavefrontEngine({.scope = PoolScope::Shared,
+                                                     .accumulator = Accumulator::PrivateInt64,
+                                                     .capacity = 500,
+                                                     .batch = 64}),
+                                    scene, settings, error),
+                              expected);
+                }
+            }
+        }
+    }
 }
 
 TEST(AdaptiveEquivalence, DoublePrecisionAgreesToo) {
@@ -128,10 +158,6 @@ TEST(AdaptiveRefusals, NameTheOption) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 8));
     RenderSettings settings;
     settings.end_sample = 100;
-    settings.split_depth = 1;
-    EXPECT_THROW(adapt(recursive::RecursiveEngine(), scene, settings, 0.1), InputError);
-    EXPECT_THROW(adapt(WavefrontEngine({}), scene, settings, 0.1), InputError);
-    settings.split_depth = 0;
     EXPECT_THROW(adapt(WavefrontEngine({.scope = PoolScope::Shared, .accumulator = Accumulator::AtomicDouble}), scene,
                        settings, 0.1),
                  InputError);

@@ -1,5 +1,5 @@
 /// The default schedule makes one image too: images so small that threads share their pixels, lists of pixels, second
-/// moments, any pool and any accumulator.
+/// halves, any pool and any accumulator.
 #include <memory>
 #include <string>
 #include <vector>
@@ -50,7 +50,7 @@ struct TinyCase {
     const char* scene;
     std::int64_t width, height, spp;
     int split_depth;
-    Moments moments;
+    Halves halves;
 };
 
 class TinyImage : public testing::TestWithParam<TinyCase> {};
@@ -59,7 +59,7 @@ TEST_P(TinyImage, IsTheSameForEveryEngineThreadCountAndSchedule) {
     const TinyCase& test = GetParam();
     const CompiledScene<float> scene = compile<float>(small_scene(test.scene, test.width, test.height));
     const auto empty = [&] {
-        return Framebuffer(scene.width, scene.height, FixedPoint::make(test.spp, scene.max_radiance), test.moments);
+        return Framebuffer(scene.width, scene.height, FixedPoint::make(test.spp, scene.max_radiance), test.halves);
     };
     RenderSettings settings;
     settings.first_sample = 3;
@@ -90,12 +90,12 @@ TEST_P(TinyImage, IsTheSameForEveryEngineThreadCountAndSchedule) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, TinyImage,
-                         testing::Values(TinyCase{"pixel", "paper", 1, 1, 2000, 0, Moments::First},
-                                         TinyCase{"moments", "paper", 1, 1, 700, 0, Moments::Second},
-                                         TinyCase{"column", "cornell", 1, 6, 150, 0, Moments::Second},
-                                         TinyCase{"line", "paper", 300, 1, 6, 0, Moments::First},
-                                         TinyCase{"split", "glass_stack", 2, 2, 120, 2, Moments::First},
-                                         TinyCase{"sample", "paper", 9, 5, 4, 0, Moments::First}),
+                         testing::Values(TinyCase{"pixel", "paper", 1, 1, 2000, 0, Halves::Together},
+                                         TinyCase{"halves", "paper", 1, 1, 700, 0, Halves::Apart},
+                                         TinyCase{"column", "cornell", 1, 6, 150, 0, Halves::Apart},
+                                         TinyCase{"line", "paper", 300, 1, 6, 0, Halves::Together},
+                                         TinyCase{"split", "glass_stack", 2, 2, 120, 2, Halves::Together},
+                                         TinyCase{"sample", "paper", 9, 5, 4, 0, Halves::Together}),
                          [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace

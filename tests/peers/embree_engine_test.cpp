@@ -203,7 +203,7 @@ TEST(EmbreeEngine, MakesTheSumsOfSquares) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 40));
     const RenderSettings settings = settings_of(6);
     const auto hash = [&](const Engine& engine) {
-        Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(6, scene.max_radiance), Moments::Second);
+        Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(6, scene.max_radiance), Halves::Apart);
         engine.render(scene, settings, framebuffer);
         return framebuffer.hash();
     };

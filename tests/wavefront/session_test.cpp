@@ -45,8 +45,8 @@ RenderSettings session_settings(std::int64_t spp, int threads) {
     return settings;
 }
 
-Framebuffer empty_framebuffer(const CompiledScene<float>& scene, std::int64_t spp, Moments moments = Moments::First) {
-    return {scene.width, scene.height, FixedPoint::make(spp, scene.max_radiance), moments};
+Framebuffer empty_framebuffer(const CompiledScene<float>& scene, std::int64_t spp, Halves halves = Halves::Together) {
+    return {scene.width, scene.height, FixedPoint::make(spp, scene.max_radiance), halves};
 }
 
 /// Every pixel whose number is `rest` modulo `step`.
@@ -59,8 +59,8 @@ std::vector<std::uint32_t> every(std::int64_t count, std::uint32_t step, std::ui
 TEST(Session, AddsUpToOneRenderWhateverItsUnitsAndHoweverOftenItIsMerged) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 37, 11));
     constexpr std::int64_t kSpp = 6;
-    for (const Moments moments : {Moments::First, Moments::Second}) {
-        Framebuffer expected = empty_framebuffer(scene, kSpp, moments);
+    for (const Halves halves : {Halves::Together, Halves::Apart}) {
+        Framebuffer expected = empty_framebuffer(scene, kSpp, halves);
         const RenderReport whole = recursive::IterativeEngine().render(scene, session_settings(kSpp, 1), expected);
         for (const NamedEngine& named : engines()) {
             for (const Grain& grain : {Grain{Grain::Kind::Pixel, 1}, {Grain::Kind::Line, 1}, {Grain::Kind::Tile, 5}}) {
@@ -70,7 +70,7 @@ TEST(Session, AddsUpToOneRenderWhateverItsUnitsAndHoweverOftenItIsMerged) {
                     RenderSettings settings = session_settings(1, threads);  // samples are the units' business
                     settings.grain = grain;
                     if (grain.kind != Grain::Kind::Line) settings.schedule = {LoopSchedule::Kind::Dynamic, 1};
-                    Framebuffer framebuffer = empty_framebuffer(scene, kSpp, moments);
+                    Framebuffer framebuffer = empty_framebuffer(scene, kSpp, halves);
                     const auto session = named.engine->begin(scene, settings, framebuffer);
                     session->add({0, 2, nullptr});
                     session->merge();

@@ -7,91 +7,20 @@
 #include <gtest/gtest.h>
 
 #include "tests/random_inputs.h"
+#include "tests/wavefront/random_rays.h"
 #include "tests/wavefront/traversal_scenes.h"
 #include "wavefront/beam.h"
-#include "wavefront/stream.h"
 
 namespace raypool::wavefront {
 namespace {
 
 using test::RandomInputs;
 
-template <class Scalar>
-using Native = Wide<Scalar, stdx::native_simd<Scalar>::size()>;
-
-template <class Scalar>
-struct StartedRay {
-    Ray<Scalar> ray;
-    std::int32_t leaving_id;
-};
-
-template <class Scalar>
-Hit<Scalar> single_hit(const CompiledScene<Scalar>& scene, const StartedRay<Scalar>& start) {
-    NoTestCount work;
-    return closest_hit<kEverything>(scene, start.ray, start.leaving_id, work);
-}
-
-/// From anywhere, or, half of them, from where a ray before hit something. One in four along an axis.
-template <class Scalar>
-std::vector<StartedRay<Scalar>> random_rays(const CompiledScene<Scalar>& scene, std::size_t count,
-                                            RandomInputs& random) {
-    std::vector<StartedRay<Scalar>> rays;
-    while (rays.size() < count) {
-        const bool is_on_lattice = random.one_in(2);
-        StartedRay<Scalar> start;
-        start.ray.origin = is_on_lattice ? random.lattice_point<Scalar>(6) : random.point<Scalar>(9);
-        start.ray.direction = random.direction<Scalar>();
-        if (random.one_in(4)) {
-            start.ray.direction = random.lattice_point<Scalar>(0);  // zeros of either sign
-            const int axis = random.below(3);
-            start.ray.direction[axis] = random.one_in(2) ? 1 : -1;
-        }
-        start.ray.time = random.unit_interval<Scalar>();
-        start.leaving_id = kNoPrimitive;
-        if (!rays.empty() && random.one_in(2)) {
-            const Ray<Scalar>& before = rays.back().ray;
-            const Hit<Scalar> hit = single_hit(scene, rays.back());
-            if (hit.primitive_id != kNoPrimitive) {
-                start.ray.origin = along<Scalar>(before.origin, hit.t, before.direction);
-                start.ray.time = before.time;
-                start.leaving_id = static_cast<std::int32_t>(hit.primitive_id);
-            }
-        }
-        rays.push_back(start);
-    }
-    return rays;
-}
-
-template <class V>
-void set_lane(V& v, int i, auto value) {
-    if constexpr (Simd<V>) {
-        v[i] = static_cast<typename V::value_type>(value);
-    } else {
-        v = static_cast<V>(value);
-    }
-}
-
-/// Rays first, first + 1, ... by lane; the last ray again in lanes beyond it.
-template <class Real>
-WideRays<Real> gather(const std::vector<StartedRay<ScalarOf<Real>>>& rays, std::size_t first) {
-    WideRays<Real> wide;
-    for (int i = 0; i < kLanes<Real>; ++i) {
-        const auto& start = rays[std::min(first + static_cast<std::size_t>(i), rays.size() - 1)];
-        for (int k = 0; k < 3; ++k) {
-            set_lane(wide.ray.origin[k], i, start.ray.origin[k]);
-            set_lane(wide.ray.direction[k], i, start.ray.direction[k]);
-        }
-        set_lane(wide.ray.time, i, start.ray.time);
-        set_lane(wide.leaving_id, i, start.leaving_id);
-    }
-    wide.inverse = ray_inverse<Real>(wide.ray.direction);
-    return wide;
-}
-
 /// As the intersection stage does it: large shapes, quads, spheres.
 template <class Real, class Work>
 void trace_stream(const CompiledScene<ScalarOf<Real>>& scene, const std::vector<StartedRay<ScalarOf<Real>>>& rays,
-                  RayStream<ScalarOf<Real>>& stream, Intersection intersection, Work& work) {
+                  RayStream<ScalarOf<Real>>& stream, const StreamLists<ScalarOf<Real>>& lists,
+                  Intersection intersection, Work& work) {
     using Row = RayRow<ScalarOf<Real>>;
     for (std::size_t first = 0; first < rays.size(); first += kLanes<Real>) {
         const WideRays<Real> wide = gather<Real>(rays, first);
@@ -113,12 +42,8 @@ void trace_stream(const CompiledScene<ScalarOf<Real>>& scene, const std::vector<
             stream.primitive_id()[at] = static_cast<std::int32_t>(lane(hit.primitive_id, i));
         }
     }
-    detail::walk_stream<kEverything, Real>(scene.quad_tree, stream, rays.size(), intersection, work);
-    detail::walk_stream<kEverything, Real>(scene.sphere_tree, stream, rays.size(), intersection, work);
-}
-
-int tree_depth(const auto& scene) {
-    return std::max(scene.sphere_tree.depth, scene.quad_tree.depth);
+    detail::walk_stream<kEverything, Real>(scene.quad_tree, stream.hits(), rays.size(), lists, intersection, work);
+    detail::walk_stream<kEverything, Real>(scene.sphere_tree, stream.hits(), rays.size(), lists, intersection, work);
 }
 
 template <class Scalar>
@@ -133,11 +58,12 @@ TYPED_TEST(RaysTogether, HitInStreamsOfAnyLengthWhatEachHitsAlone) {
         std::size_t hits = 0;
         for (const std::size_t length : {1, 2, 7, 8, 9, 11, 12, 13, 15, 16, 17, 1000}) {
             for (std::size_t left = 4000; left >= length && left > 3000; left -= std::min<std::size_t>(left, 50)) {
-                RayStream<TypeParam> stream(length, tree_depth(scene));  // no longer than it must be
+                RayStream<TypeParam> stream(length);  // no longer than it must be
+                const StreamLists<TypeParam> lists(length, tree_depth(scene));
                 const auto rays = random_rays(scene, length, random);
                 NoTestCount work;
                 const auto intersection = left % 100 == 0 ? Intersection::Pairs : Intersection::Stream;
-                trace_stream<Native<TypeParam>>(scene, rays, stream, intersection, work);
+                trace_stream<Native<TypeParam>>(scene, rays, stream, lists, intersection, work);
                 for (std::size_t i = 0; i < length; ++i) {
                     const Hit<TypeParam> expected = single_hit(scene, rays[i]);
                     ASSERT_EQ(stream.primitive_id()[i], expected.primitive_id)
@@ -228,9 +154,10 @@ TEST(Stream, CountsATestForEachRayAndNoneForTheEmptyLanes) {
     for (const std::size_t length : {1, 15, 16, 17, 33}) {
         std::vector<StartedRay<float>> rays(length);
         for (auto& start : rays) start = {{vec3<float>(1, 2, 9), vec3<float>(0, 0, -1), 0}, kNoPrimitive};
-        RayStream<float> stream(length, tree_depth(scene));
+        RayStream<float> stream(length);
+        const StreamLists<float> lists(length, tree_depth(scene));
         TestCount work;
-        trace_stream<Native<float>>(scene, rays, stream, Intersection::Pairs, work);
+        trace_stream<Native<float>>(scene, rays, stream, lists, Intersection::Pairs, work);
         EXPECT_EQ(work.primitive_tests, static_cast<std::int64_t>(length));
         EXPECT_LE(work.box_tests, static_cast<std::int64_t>(length));  // none where the sphere is outside the tree
         EXPECT_EQ(stream.distance()[length - 1], 4);

@@ -14,17 +14,16 @@
 namespace raypool::test {
 namespace {
 
-Checkpoint some_checkpoint(Moments moments, std::int64_t width = 3, std::int64_t height = 1) {
+Checkpoint some_checkpoint(Halves halves, std::int64_t width = 3, std::int64_t height = 1) {
     Checkpoint sums{{{"scene", "0123"}, {"seed", "7"}},
                     40,
                     {{0, 5}, {7, 40}},
                     {},
                     0,
-                    Framebuffer(width, height, FixedPoint::make(40, 2.5), moments)};
+                    Framebuffer(width, height, FixedPoint::make(40, 2.5), halves)};
     RandomInputs random(1);
     for (std::int64_t& sum : sums.framebuffer.sums()) sum = static_cast<std::int64_t>(random.bits() >> 2U);
-    for (std::int64_t& square : sums.framebuffer.squares()) square = static_cast<std::int64_t>(random.bits() >> 2U);
-    if (moments == Moments::Second) {
+    if (halves == Halves::Apart) {
         sums.ranges.clear();
         sums.sample_counts.assign(static_cast<std::size_t>(width * height), 17);
         sums.rounds = 3;
@@ -47,8 +46,8 @@ class CheckpointFile : public testing::Test {
 };
 
 TEST_F(CheckpointFile, ComesBackBitByBit) {
-    for (const Moments moments : {Moments::First, Moments::Second}) {
-        const Checkpoint sums = some_checkpoint(moments, 5, 4);
+    for (const Halves halves : {Halves::Together, Halves::Apart}) {
+        const Checkpoint sums = some_checkpoint(halves, 5, 4);
         write_checkpoint(path_, sums);
         const Checkpoint back = read_checkpoint(path_);
         EXPECT_EQ(back.key, sums.key);
@@ -58,12 +57,12 @@ TEST_F(CheckpointFile, ComesBackBitByBit) {
         EXPECT_EQ(back.rounds, sums.rounds);
         EXPECT_EQ(back.framebuffer.hash(), sums.framebuffer.hash());
         EXPECT_EQ(back.framebuffer.fixed_point().limit, sums.framebuffer.fixed_point().limit);
-        EXPECT_EQ(back.framebuffer.has_squares(), moments == Moments::Second);
+        EXPECT_EQ(back.framebuffer.has_halves(), halves == Halves::Apart);
     }
 }
 
 TEST_F(CheckpointFile, CutAtAnyLengthIsRefusedByItsName) {
-    write_checkpoint(path_, some_checkpoint(Moments::Second));
+    write_checkpoint(path_, some_checkpoint(Halves::Apart));
     const std::string whole = bytes_of(path_);
     for (std::size_t length = 0; length < whole.size(); ++length) {
         write_bytes(path_, std::string_view(whole).substr(0, length));
@@ -79,7 +78,7 @@ TEST_F(CheckpointFile, CutAtAnyLengthIsRefusedByItsName) {
 }
 
 TEST_F(CheckpointFile, WithAnyBitFlippedIsRefused) {
-    write_checkpoint(path_, some_checkpoint(Moments::First));
+    write_checkpoint(path_, some_checkpoint(Halves::Together));
     const std::string whole = bytes_of(path_);
     for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
         std::string damaged = whole;
@@ -90,10 +89,10 @@ TEST_F(CheckpointFile, WithAnyBitFlippedIsRefused) {
 }
 
 TEST_F(CheckpointFile, OfAnotherVersionIsRefusedByItsVersion) {
-    for (const char* other : {"1", "3"}) {
-        write_checkpoint(path_, some_checkpoint(Moments::First));
+    for (const char* other : {"1", "4"}) {
+        write_checkpoint(path_, some_checkpoint(Halves::Together));
         std::string text = bytes_of(path_);
-        const std::size_t at = text.find("\"version\":2");
+        const std::size_t at = text.find("\"version\":3");
         ASSERT_NE(at, std::string::npos);
         text.replace(at + 10, 1, other);
         write_bytes(path_, text);
@@ -121,8 +120,8 @@ std::string refusal_of(std::string text) {
 /// A file without its checksum, one pixel large, with `instead` in place of `part`.
 std::string changed(const std::string& part, const std::string& instead) {
     const std::string header =
-        R"({"fraction_bits":40,"format":"raypool sums","has_counts":false,"has_squares":false,"height":1,"key":[["seed","40"]],)"
-        R"("limit_bits":2,"ranges":[[0,5],[7,40]],"rounds":0,"spp":40,"version":2,"width":1})";
+        R"({"fraction_bits":40,"format":"raypool sums","has_counts":false,"has_halves":false,"height":1,"key":[["seed","40"]],)"
+        R"("limit_bits":2,"ranges":[[0,5],[7,40]],"rounds":0,"spp":40,"version":3,"width":1})";
     const std::size_t at = header.find(part);
     EXPECT_NE(at, std::string::npos) << part;
     return std::string(header).replace(at, part.size(), instead) + "\n" + std::string(24, '\0');
@@ -138,7 +137,7 @@ TEST(HostileCheckpoint, AreRefusedWhereverTheirHeaderIsNotAsItIsWritten) {
              {"\"height\":1", "\"height\":4294967297"},
              {"\"rounds\":0", "\"rounds\":1e300"},
              {"\"rounds\":0", "\"rounds\":-1"},
-             {"\"version\":2", "\"version\":\"1\""},
+             {"\"version\":3", "\"version\":\"1\""},
              {"[0,5],[7,40]", "[0,5],[5,40]"},
              {"[0,5],[7,40]", "[7,40],[0,5]"},
              {"[0,5],[7,40]", "[0,5],[7]"},
@@ -155,7 +154,7 @@ TEST(HostileCheckpoint, AreRefusedWhereverTheirHeaderIsNotAsItIsWritten) {
 
 TEST(HostileCheckpoint, NestedWithoutEndAreRefusedWithoutDescending) {
     const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
-    EXPECT_NE(refusal_of(changed("\"version\":2", "\"version\":" + deep)), "");
+    EXPECT_NE(refusal_of(changed("\"version\":3", "\"version\":" + deep)), "");
     EXPECT_NE(refusal_of(changed("\"raypool sums\"", deep)), "");
 }
 

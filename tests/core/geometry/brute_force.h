@@ -62,20 +62,26 @@ Scalar shape_distance(const Block& block, int lane, const Ray<Scalar>& ray, std:
 }
 
 template <InBox in_box, class Scalar, class Block>
-void ask_all(std::span<const Block> blocks, const Ray<Scalar>& ray, std::int32_t leaving_id, Hit<Scalar>& hit) {
+void ask_all(std::span<const Block> blocks, const Ray<Scalar>& ray, std::int32_t leaving_id, auto tell) {
     for (const Block& block : blocks)
         for (int lane = 0; lane < Block::kLanes; ++lane)
             if (block.id[lane] != kNoPrimitive)
-                keep_closer<Scalar>(shape_distance<in_box, Scalar>(block, lane, ray, leaving_id), block.id[lane], hit);
+                tell(shape_distance<in_box, Scalar>(block, lane, ray, leaving_id), block.id[lane]);
+}
+
+/// Calls tell(distance, id) for every shape; the distance is infinity where the ray does not meet it.
+template <class Scalar>
+void for_each_distance(const ShapeView<Scalar>& scene, const Ray<Scalar>& ray, std::int32_t leaving_id, auto tell) {
+    ask_all<InBox::No>(scene.large_spheres, ray, leaving_id, tell);
+    ask_all<InBox::No>(scene.planes, ray, leaving_id, tell);
+    ask_all<InBox::Yes>(scene.sphere_tree.blocks, ray, leaving_id, tell);
+    ask_all<InBox::Yes>(scene.quad_tree.blocks, ray, leaving_id, tell);
 }
 
 template <class Scalar>
 Hit<Scalar> brute_force_hit(const ShapeView<Scalar>& scene, const Ray<Scalar>& ray, std::int32_t leaving_id) {
     Hit<Scalar> hit;
-    ask_all<InBox::No>(scene.large_spheres, ray, leaving_id, hit);
-    ask_all<InBox::No>(scene.planes, ray, leaving_id, hit);
-    ask_all<InBox::Yes>(scene.sphere_tree.blocks, ray, leaving_id, hit);
-    ask_all<InBox::Yes>(scene.quad_tree.blocks, ray, leaving_id, hit);
+    for_each_distance(scene, ray, leaving_id, [&](Scalar t, std::int32_t id) { keep_closer<Scalar>(t, id, hit); });
     return hit;
 }
 

@@ -16,54 +16,100 @@ constexpr std::int64_t kHeight = 8;
 /// No sample below is brighter.
 constexpr double kBrightest = 1;
 
-/// Adds samples uniform in [mean - spread, mean + spread], of their own in each channel.
+/// A framebuffer that knows how many samples each pixel has.
 class Samples {
   public:
-    explicit Samples(std::int64_t most)
-        : framebuffer(kWidth, kHeight, FixedPoint::make(most, kBrightest), Moments::Second) {}
+    explicit Samples(std::int64_t most, double brightest = kBrightest, std::int64_t width = kWidth,
+                     std::int64_t height = kHeight)
+        : framebuffer(width, height, FixedPoint::make(most, brightest), Halves::Apart),
+          counts(static_cast<std::size_t>(width * height)) {}
+    void add(std::size_t pixel, const FixedRgb& sample) {
+        const auto number = static_cast<std::uint32_t>(counts[pixel]++);
+        framebuffer.add(cell_of(true, static_cast<std::uint32_t>(pixel), number), sample);
+    }
+    void add(std::size_t pixel, double grey) {
+        add(pixel, SampleConverter(framebuffer.fixed_point()).convert<double>(vec3<double>(grey, grey, grey)));
+    }
+    /// Samples uniform in [mean - spread, mean + spread], of their own in each channel.
     void add(std::size_t pixel, std::int64_t count, double mean, double spread) {
         SampleConverter converter(framebuffer.fixed_point());
         for (std::int64_t i = 0; i < count; ++i) {
             const auto value = [&] { return mean + spread * random_.uniform(-1, 1); };
-            const FixedRgb sample = converter.convert<double>(vec3<double>(value(), value(), value()));
-            framebuffer.add(static_cast<std::int64_t>(pixel), sample);
-            framebuffer.add_square(static_cast<std::int64_t>(pixel), converter.square(sample));
+            add(pixel, converter.convert<double>(vec3<double>(value(), value(), value())));
         }
     }
+    [[nodiscard]] ErrorEstimate estimate(double brightest = kBrightest) const {
+        return estimate_error(framebuffer, counts, brightest);
+    }
     Framebuffer framebuffer;
+    std::vector<std::int32_t> counts;
 
   private:
     RandomInputs random_{1};
 };
 
+/// Carries `plan` out: add(pixel) adds a sample.
+template <class Add>
+void carry_out(AdaptivePlan& plan, Samples& samples, Add add) {
+    for (auto passes = plan.next(samples.framebuffer); !passes.empty(); passes = plan.next(samples.framebuffer)) {
+        for (const SamplePass& pass : passes) {
+            EXPECT_TRUE(std::is_sorted(pass.pixels.begin(), pass.pixels.end()));
+            for (const std::uint32_t pixel : pass.pixels) {
+                ASSERT_EQ(samples.counts[pixel], pass.first);
+                for (std::int64_t i = pass.first; i < pass.end; ++i) add(pixel);
+            }
+        }
+    }
+}
+
+TEST(Halves, ShareEachPairOfSamplesByChance) {
+    int first_in_b = 0, changes = 0, alike = 0;
+    constexpr std::uint32_t kPairs = 4000;
+    for (std::uint32_t pixel = 0; pixel < 3; ++pixel) {
+        for (std::uint32_t pair = 0; pair < kPairs; ++pair) {
+            const std::uint32_t half = half_of_sample(pixel, 2 * pair);
+            ASSERT_EQ(half + half_of_sample(pixel, 2 * pair + 1), 1U);
+            first_in_b += static_cast<int>(half);
+            changes += half != half_of_sample(pixel, 2 * pair + 2) ? 1 : 0;
+            alike += half == half_of_sample(pixel + 1, 2 * pair) ? 1 : 0;
+        }
+    }
+    for (const int count : {first_in_b, changes, alike}) EXPECT_NEAR(count, 1.5 * kPairs, 4 * std::sqrt(0.75 * kPairs));
+}
+
+/// Also where counts are odd, so that the halves are of different size and samples far from zero.
 TEST(ErrorEstimate, IsTheStandardErrorOfTheMeans) {
-    constexpr std::int32_t kCount = 400;
-    Samples samples(kCount);
-    for (std::size_t i = 0; i < kWidth * kHeight; ++i) samples.add(i, kCount, 0.5, 0.3);
-    const ErrorEstimate estimate =
-        estimate_error(samples.framebuffer, std::vector<std::int32_t>(kWidth * kHeight, kCount), kBrightest);
-    const double deviation = 0.3 / std::sqrt(3.0);
-    EXPECT_NEAR(estimate.rmse, deviation / std::sqrt(kCount), 0.02 * deviation / std::sqrt(kCount));
-    for (const float pixel : estimate.deviation) EXPECT_NEAR(pixel, deviation, 0.05 * deviation);
+    for (const std::int32_t count : {2, 3, 7, 400}) {
+        constexpr std::int64_t kSide = 100;
+        Samples samples(count, kBrightest, kSide, kSide);
+        for (std::size_t i = 0; i < kSide * kSide; ++i) samples.add(i, count, 0.5, 0.3);
+        const ErrorEstimate estimate = samples.estimate();
+        const double deviation = 0.3 / std::sqrt(3.0);
+        // 3 kSide^2 squares of nearly normal differences: their mean is known to 0.8 %, a root to 0.4 %, four of which
+        // are allowed.
+        EXPECT_NEAR(estimate.rmse / (deviation / std::sqrt(count)), 1, 0.016) << count;
+        // 24 pixels around, or eight at a corner: a root is known to 5.9 %, or to 10 %.
+        for (const float pixel : estimate.deviation) EXPECT_NEAR(pixel / deviation, 1, 0.5) << count;
+    }
 }
 
 TEST(ErrorEstimate, IsExactlyNothingForPixelsWithoutNoiseAndSaysThatItKnowsNone) {
-    Samples samples(64);
-    for (std::size_t i = 0; i < kWidth * kHeight; ++i) samples.add(i, 64, 0.7, 0);
-    const ErrorEstimate estimate =
-        estimate_error(samples.framebuffer, std::vector<std::int32_t>(kWidth * kHeight, 64), kBrightest);
-    EXPECT_EQ(estimate.rmse, 0);
-    EXPECT_EQ(estimate.flat_pixels, kWidth * kHeight);
-    // By the rule of three, for 99 %: fewer than ln 100 samples of all that there are should have found light.
-    EXPECT_NEAR(estimate.most_rmse, kBrightest * std::sqrt(std::log(100.0) / (kWidth * kHeight)) / 64, 1e-9);
-    EXPECT_EQ(estimate.unseen_rmse, estimate.most_rmse);
+    for (const std::int32_t count : {64, 65}) {
+        Samples samples(count);
+        for (std::size_t i = 0; i < kWidth * kHeight; ++i) samples.add(i, count, 0.7, 0);
+        const ErrorEstimate estimate = samples.estimate();
+        EXPECT_EQ(estimate.rmse, 0);
+        EXPECT_EQ(estimate.flat_pixels, kWidth * kHeight);
+        // By the rule of three, for 99 %: fewer than ln 100 samples of all that there are should have found light.
+        EXPECT_NEAR(estimate.most_rmse, kBrightest * std::sqrt(std::log(100.0) / (kWidth * kHeight)) / count, 1e-9);
+        EXPECT_EQ(estimate.unseen_rmse, estimate.most_rmse);
+    }
 }
 
 TEST(ErrorEstimate, OfAPixelIsThatOfThePixelsAroundItAndNotItsOwn) {
     Samples samples(64);
     for (std::size_t i = 0; i < kWidth * kHeight; ++i) samples.add(i, 64, 0.5, i == 3 * kWidth + 5 ? 0.5 : 0);
-    const std::vector<float> deviation =
-        estimate_error(samples.framebuffer, std::vector<std::int32_t>(kWidth * kHeight, 64), kBrightest).deviation;
+    const std::vector<float> deviation = samples.estimate().deviation;
     for (std::size_t i = 0; i < deviation.size(); ++i) {
         const auto x = static_cast<int>(i % kWidth), y = static_cast<int>(i / kWidth);
         const bool is_near = std::abs(x - 5) <= 2 && std::abs(y - 3) <= 2 && (x != 5 || y != 3);
@@ -73,29 +119,22 @@ TEST(ErrorEstimate, OfAPixelIsThatOfThePixelsAroundItAndNotItsOwn) {
 
 TEST(ErrorEstimate, SeesDimNoiseWhateverElseTheSceneHolds) {
     for (const double brightest : {1.0, 1e3, 1e6}) {
-        Framebuffer framebuffer(1, 1, FixedPoint::make(4096, brightest), Moments::Second);
-        SampleConverter converter(framebuffer.fixed_point());
-        for (int i = 0; i < 16; ++i) {
-            const double value = i % 2 == 0 ? 0.039 : 0.041;
-            const FixedRgb sample = converter.convert<double>(vec3<double>(value, value, value));
-            framebuffer.add(0, sample);
-            framebuffer.add_square(0, converter.square(sample));
-        }
-        const double rmse = estimate_error(framebuffer, {16}, brightest).rmse;
-        EXPECT_NEAR(rmse, 0.001 / std::sqrt(15.0), 1e-4 * rmse) << brightest;
+        Samples samples(4096, brightest, 1, 1);
+        // One half has all of the brighter ones: halves that are 16 * 0.001 apart.
+        for (std::uint32_t i = 0; i < 16; ++i) samples.add(0, half_of_sample(0U, i) == 0 ? 0.039 : 0.041);
+        const double rmse = samples.estimate(brightest).rmse;
+        EXPECT_NEAR(rmse, 0.001, 1e-4 * rmse) << brightest;
     }
 }
 
 TEST(ErrorEstimate, KeepsItsDigitsWhereVarianceIsTinyBesideTheMean) {
-    Framebuffer framebuffer(1, 1, FixedPoint::make(1, 1), Moments::Second);
-    SampleConverter converter(framebuffer.fixed_point());
+    Samples samples(1, 1, 1, 1);
     constexpr std::int64_t kMean = std::int64_t{1} << 44;
-    for (const std::int64_t apart : {-1, 1, -1, 1}) {
-        const FixedRgb sample{kMean + apart, kMean + apart, kMean + apart};
-        framebuffer.add(0, sample);
-        framebuffer.add_square(0, converter.square(sample));
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        const std::int64_t grey = kMean + (half_of_sample(0U, i) == 0 ? -1 : 1);
+        samples.add(0, {grey, grey, grey});
     }
-    EXPECT_DOUBLE_EQ(estimate_error(framebuffer, {4}, 1).rmse * framebuffer.fixed_point().scale(), std::sqrt(1.0 / 3));
+    EXPECT_DOUBLE_EQ(samples.estimate(1).rmse * samples.framebuffer.fixed_point().scale(), 1);
 }
 
 struct RareCase {
@@ -109,20 +148,14 @@ TEST_P(RareLight, RarelyBreaksTheLimitOfItsError) {
     const auto [chance, radiance] = GetParam();
     constexpr int kSamples = 16;
     constexpr int kTrials = 400;
-    const std::vector<std::int32_t> counts(kWidth * kHeight, kSamples);
     const double error = radiance * std::sqrt(chance * (1 - chance) / kSamples);
     RandomInputs random(3);
     int broken = 0;
     for (int trial = 0; trial < kTrials; ++trial) {
-        Framebuffer framebuffer(kWidth, kHeight, FixedPoint::make(kSamples, radiance), Moments::Second);
-        SampleConverter converter(framebuffer.fixed_point());
-        const FixedRgb lit = converter.convert<double>(vec3<double>(radiance, radiance, radiance));
-        for (std::int64_t i = 0; i < kWidth * kHeight * kSamples; ++i) {
-            if (random.uniform(0, 1) >= chance) continue;
-            framebuffer.add(i / kSamples, lit);
-            framebuffer.add_square(i / kSamples, converter.square(lit));
-        }
-        broken += estimate_error(framebuffer, counts, radiance).most_rmse < error ? 1 : 0;
+        Samples samples(kSamples, radiance);
+        for (std::size_t i = 0; i < kWidth * kHeight * kSamples; ++i)
+            samples.add(i / kSamples, random.uniform(0, 1) < chance ? radiance : 0);
+        broken += samples.estimate(radiance).most_rmse < error ? 1 : 0;
     }
     EXPECT_LE(broken, 0.02 * kTrials);
 }
@@ -135,11 +168,8 @@ INSTANTIATE_TEST_SUITE_P(Chances, RareLight,
 AdaptivePlan carried_out(double target, std::int64_t most, double ratio) {
     AdaptivePlan plan({target, kBrightest, most}, kWidth, kHeight);
     Samples samples(most);
-    for (auto passes = plan.next(samples.framebuffer); !passes.empty(); passes = plan.next(samples.framebuffer)) {
-        for (const SamplePass& pass : passes)
-            for (const std::uint32_t pixel : pass.pixels)
-                samples.add(pixel, pass.end - pass.first, 0.5, pixel % kWidth < kWidth / 2 ? 0.4 : 0.4 * ratio);
-    }
+    carry_out(plan, samples,
+              [&](std::size_t pixel) { samples.add(pixel, 1, 0.5, pixel % kWidth < kWidth / 2 ? 0.4 : 0.4 * ratio); });
     return plan;
 }
 
@@ -161,20 +191,8 @@ TEST(AdaptivePlan, StopsAtTheMostSamples) {
 /// Carries a plan out on pixels whose samples are all equal.
 AdaptivePlan carried_out_without_noise(const AdaptiveTarget& target) {
     AdaptivePlan plan(target, kWidth, kHeight);
-    Framebuffer framebuffer(kWidth, kHeight, FixedPoint::make(target.most_samples, target.max_radiance),
-                            Moments::Second);
-    SampleConverter converter(framebuffer.fixed_point());
-    const FixedRgb sample = converter.convert<double>(vec3<double>(0.25, 0.25, 0.25));
-    for (auto passes = plan.next(framebuffer); !passes.empty(); passes = plan.next(framebuffer)) {
-        for (const SamplePass& pass : passes) {
-            for (const std::uint32_t pixel : pass.pixels) {
-                for (std::int64_t i = pass.first; i < pass.end; ++i) {
-                    framebuffer.add(pixel, sample);
-                    framebuffer.add_square(pixel, converter.square(sample));
-                }
-            }
-        }
-    }
+    Samples samples(target.most_samples, target.greatest_sample);
+    carry_out(plan, samples, [&](std::size_t pixel) { samples.add(pixel, 0.25); });
     return plan;
 }
 
@@ -202,22 +220,11 @@ TEST(AdaptivePlan, DoesNotCallATargetReachedThatALampMayBreakWhichNoSampleFound)
 /// Renders pixels in which a sample is `radiance` with the chance 1 / radiance, else 0: their mean is 1.
 std::pair<AdaptivePlan, double> carried_out_in_rare_light(double target, double radiance, std::uint64_t seed) {
     AdaptivePlan plan({target, radiance, 1 << 16}, kWidth, kHeight);
-    Framebuffer framebuffer(kWidth, kHeight, FixedPoint::make(1, radiance), Moments::Second);
-    SampleConverter converter(framebuffer.fixed_point());
-    const FixedRgb lit = converter.convert<double>(vec3<double>(radiance, radiance, radiance));
+    Samples samples(1, radiance);
     RandomInputs random(seed);
-    for (auto passes = plan.next(framebuffer); !passes.empty(); passes = plan.next(framebuffer)) {
-        for (const SamplePass& pass : passes) {
-            for (const std::uint32_t pixel : pass.pixels) {
-                for (std::int64_t i = pass.first; i < pass.end; ++i) {
-                    if (random.uniform(0, radiance) >= 1) continue;
-                    framebuffer.add(pixel, lit);
-                    framebuffer.add_square(pixel, converter.square(lit));
-                }
-            }
-        }
-    }
-    const Image image = framebuffer.image(plan.sample_counts());
+    carry_out(plan, samples,
+              [&](std::size_t pixel) { samples.add(pixel, random.uniform(0, radiance) < 1 ? radiance : 0); });
+    const Image image = samples.framebuffer.image(plan.sample_counts());
     double mean = 0;
     for (const float value : image.rgb) mean += value / static_cast<double>(image.rgb.size());
     return {plan, mean};
@@ -240,18 +247,9 @@ TEST(AdaptivePlan, KeepsTheMeanAndTheTargetWhereLightIsRare) {
 TEST(AdaptivePlan, AsksForEachSampleOnce) {
     AdaptivePlan plan({0.01, kBrightest, 5000}, kWidth, kHeight);
     Samples samples(5000);
-    std::vector<std::int64_t> counts(kWidth * kHeight);
-    for (auto passes = plan.next(samples.framebuffer); !passes.empty(); passes = plan.next(samples.framebuffer)) {
-        for (const SamplePass& pass : passes) {
-            EXPECT_TRUE(std::is_sorted(pass.pixels.begin(), pass.pixels.end()));
-            for (const std::uint32_t pixel : pass.pixels) {
-                ASSERT_EQ(counts[pixel], pass.first);
-                counts[pixel] = pass.end;
-                samples.add(pixel, pass.end - pass.first, 0.5, 0.01 * static_cast<double>(pixel % 40));
-            }
-        }
-    }
-    EXPECT_EQ(std::vector<std::int64_t>(plan.sample_counts().begin(), plan.sample_counts().end()), counts);
+    carry_out(plan, samples,
+              [&](std::size_t pixel) { samples.add(pixel, 1, 0.5, 0.01 * static_cast<double>(pixel % 40)); });
+    EXPECT_EQ(plan.sample_counts(), samples.counts);
 }
 
 }  // namespace
