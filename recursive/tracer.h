@@ -128,7 +128,10 @@ class Tracer {
         work_.begin_segment();
         const Hit<Scalar> hit = closest_hit<features>(scene_, path.ray, path.leaving_id, work_);
         if (hit.primitive_id == kNoPrimitive) {
-            return finish(path.throughput.cwiseProduct(sky_radiance<Scalar>(scene_.sky, path.ray.direction)));
+            Scalar density = 0;
+            if constexpr (features.lights) density = path.density;
+            return finish(escaping_radiance<features, Scalar>(scene_, path.ray.direction, path.throughput,
+                                                              light_sampling_, density));
         }
         LightPart<Scalar> lights;
         if constexpr (features.lights) {

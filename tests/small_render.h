@@ -12,10 +12,11 @@
 
 namespace raypool {
 
-/// A built-in scene, or `textures`, at another width, in its own shape unless a height is given.
+/// A built-in scene, or `textures` or `sky_image`, at another width, in its own shape unless a height is given.
 inline Scene small_scene(const std::string& name, std::int64_t width, std::int64_t height = 0) {
+    const bool has_images = name == "textures" || name == "sky_image";
     Scene scene =
-        name == "textures" ? read_scene(RAYPOOL_SOURCE_DIR "/scenes/textures/textures.json") : builtin_scene(name);
+        has_images ? read_scene(RAYPOOL_SOURCE_DIR "/scenes/textures/" + name + ".json") : builtin_scene(name);
     scene.height = height > 0 ? height : std::max<std::int64_t>(1, scene.height * width / scene.width);
     scene.width = width;
     return scene;

@@ -222,8 +222,12 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         const Mask<Real> is_hit = as_mask<Real>(hit.primitive_id >= Int<Real>(0));
         const unsigned hits = mask_bits(is_hit) & active;
         if (const unsigned misses = active & ~hits; misses != 0) {
-            const Vec3<Real> sky = sky_radiance<Real>(context_.scene.sky, record.ray.direction);
-            contributions_.template put<Real>(cell_of(record.key), product<Real>(record.throughput, sky), misses);
+            Real density(0);
+            if constexpr (features.lights) density = record.density;
+            const Vec3<Real> radiance = escaping_radiance<features, Real>(
+                context_.scene, record.ray.direction, record.throughput,
+                needed_light_sampling(context_.scene.features, context_.settings), density);
+            contributions_.template put<Real>(cell_of(record.key), radiance, misses);
         }
         if (hits == 0) return 0;
 

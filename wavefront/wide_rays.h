@@ -42,10 +42,6 @@ RAYPOOL_INLINE Uint32<Real> select_bits(unsigned bits, const Uint32<Real>& yes, 
         return bits != 0 ? yes : no;
     }
 }
-template <class Real>
-RAYPOOL_INLINE Vec3<Real> product(const Vec3<Real>& a, const Vec3<Real>& b) {
-    return vec3<Real>(a[0] * b[0], a[1] * b[1], a[2] * b[2]);
-}
 /// Camera rays, which start on nothing.
 template <class Real>
 RAYPOOL_INLINE WideRays<Real> wide_camera_rays(const Ray<Real>& ray) {

@@ -96,7 +96,7 @@ class alignas(64) PacketTracer final : public recursive::LineTracer {
         const Mask<Real> is_hit = as_mask<Real>(hit.primitive_id >= Int<Real>(0));
         const unsigned hits = mask_bits(is_hit) & active;
         if (const unsigned misses = active & ~hits; misses != 0)
-            contribute(throughput_.cwiseProduct(sky_radiance<Real>(scene_.sky, ray_.direction)), misses);
+            contribute(escaping_radiance<features, Real>(scene_, ray_.direction, throughput_), misses);
 
         is_alive_ = is_alive_ && is_hit;
         const Uint step = load<Uint>(step_);

@@ -108,6 +108,7 @@ Scene plain_scene(const Scene& scene) {
     plain.quads.clear();
     plain.planes.clear();
     plain.camera.defocus_angle_degrees = 0;
+    if (plain.background.image) plain.background = {Vector3d::Ones(), Vector3d::Ones()};
     for (Sphere& sphere : plain.spheres) sphere.center1 = sphere.center0;
 
     const auto grey = static_cast<std::int32_t>(plain.textures.size());

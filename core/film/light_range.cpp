@@ -21,8 +21,13 @@ double dimmest_light(const Scene& scene) {
                 add(texture.odd, material.strength);
         }
     };
-    add(scene.background.bottom);
-    add(scene.background.top);
+    const Background& background = scene.background;
+    add(background.bottom);
+    add(background.top);
+    if (background.image) {
+        for (const float channel : background.image->rgb)
+            if (channel > 0) least = std::min(least, background.scale * channel);
+    }
     add_shapes(scene.spheres);
     add_shapes(scene.quads);
     add_shapes(scene.planes);

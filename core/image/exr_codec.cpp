@@ -50,10 +50,11 @@ std::int64_t rows_of_block(const Imf::Header& header) {
 
 /// Checks what OpenEXR would take at its word when it reserves memory for a part of a file of so many bytes; returns
 /// the number of chunks.
-std::int64_t check_part(const Imf::Header& header, std::int64_t channel_count, std::int64_t file_bytes) {
+std::int64_t check_part(const Imf::Header& header, std::int64_t channel_count, std::int64_t file_bytes,
+                        const ImageLimits& limits) {
     const std::int64_t width = width_of(header.dataWindow());
     const std::int64_t height = height_of(header.dataWindow());
-    check_image_size(width, height, kMaxImageSide);
+    check_image_size(width, height, limits.side, limits.pixels);
     std::int64_t block_width = width;
     std::int64_t chunk_count = 0;
     if (header.hasTileDescription()) {
@@ -78,7 +79,7 @@ std::int64_t check_part(const Imf::Header& header, std::int64_t channel_count, s
 }
 
 /// Returns what MemoryInput is to hide.
-std::vector<std::size_t> check_headers(BytesView bytes) {
+std::vector<std::size_t> check_headers(BytesView bytes, const ImageLimits& limits) {
     constexpr std::int64_t kLeastChunkBytes = 8;  // its place in the table of chunks
     ExrHeader headers = check_exr_header(bytes);
     MemoryInput stream(bytes, headers.hidden);
@@ -87,7 +88,7 @@ std::vector<std::size_t> check_headers(BytesView bytes) {
     for (const std::int64_t channel_count : headers.channel_counts) {
         Imf::Header header;
         header.readFrom(stream, headers.version);
-        chunk_count += check_part(header, channel_count, std::ssize(bytes));
+        chunk_count += check_part(header, channel_count, std::ssize(bytes), limits);
         if (chunk_count > std::ssize(bytes) / kLeastChunkBytes) throw std::runtime_error("the file ends too early");
     }
     return std::move(headers.hidden);
@@ -184,8 +185,8 @@ Bytes encode_exr(const Image& image, const ImageAttributes& attributes) {
     return std::move(stream.bytes);
 }
 
-ImageContents decode_exr(BytesView bytes) {
-    const std::vector<std::size_t> hidden = check_headers(bytes);
+ImageContents decode_exr(BytesView bytes, const ImageLimits& limits) {
+    const std::vector<std::size_t> hidden = check_headers(bytes, limits);
     MemoryInput stream(bytes, hidden);
     Imf::MultiPartInputFile file(stream);
     const ExrLayer layer = find_layer(file);

@@ -27,10 +27,10 @@ Bytes encode_png(const Image& image, const ImageAttributes& attributes);
 ImageContents decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels);
 
 Bytes encode_exr(const Image& image, const ImageAttributes& attributes);
-ImageContents decode_exr(BytesView bytes);
+ImageContents decode_exr(BytesView bytes, const ImageLimits& limits = {});
 
 Bytes encode_pfm(const Image& image);
-ImageContents decode_pfm(BytesView bytes);
+ImageContents decode_pfm(BytesView bytes, const ImageLimits& limits = {});
 
 /// An image that is shown whole.
 inline ImageContents whole(Image image) {

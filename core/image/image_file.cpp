@@ -112,4 +112,16 @@ Image read_texture(const fs::path& path, std::int64_t max_texels) {
     });
 }
 
+Image read_environment(const fs::path& path, std::int64_t max_texels) {
+    const ImageFormat format = image_format(path);
+    return naming(path, "read", [&] {
+        const auto max_size =
+            64 * static_cast<std::uintmax_t>(max_texels) + (1U << 20U);  // 16 values a texel, and some
+        const ImageLimits limits{kMaxTextureSide, max_texels};
+        if (format == ImageFormat::Png) throw std::runtime_error("a PNG image, whose values end at 1");
+        const Bytes bytes = read_bytes(path, std::min(max_size, kMaxImageBytes));
+        return (format == ImageFormat::Exr ? decode_exr(bytes, limits) : decode_pfm(bytes, limits)).image;
+    });
+}
+
 }  // namespace raypool

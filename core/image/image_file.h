@@ -30,7 +30,13 @@ inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 30;
 inline constexpr std::int64_t kMaxExrBlockValues = std::int64_t{1} << 28;
 inline constexpr std::int64_t kMaxExrExpansion = 256;  ///< or so many values in a block for each byte of the file
 inline constexpr std::int64_t kMaxTextureSide = 16384;
-inline constexpr std::int64_t kMaxSceneTexels = std::int64_t{1} << 28;  ///< of all textures of a scene
+inline constexpr std::int64_t kMaxSceneTexels = std::int64_t{1} << 28;  ///< of all images of a scene
+
+/// What an image may claim to be.
+struct ImageLimits {
+    std::int64_t side = kMaxImageSide;
+    std::int64_t pixels = kMaxImagePixels;
+};
 
 enum class ImageFormat { Png, Exr, Pfm };
 
@@ -69,5 +75,8 @@ Image read_image(const std::filesystem::path& path);
 
 /// A PNG file, as read_image() reads it, of at most kMaxTextureSide on either side and at most `max_texels`.
 Image read_texture(const std::filesystem::path& path, std::int64_t max_texels = kMaxSceneTexels);
+
+/// An EXR or PFM file, as read_image() reads it, within the same limits.
+Image read_environment(const std::filesystem::path& path, std::int64_t max_texels = kMaxSceneTexels);
 
 }  // namespace raypool

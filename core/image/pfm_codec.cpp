@@ -65,7 +65,7 @@ Bytes encode_pfm(const Image& image) {
     return bytes;
 }
 
-ImageContents decode_pfm(BytesView bytes) {
+ImageContents decode_pfm(BytesView bytes, const ImageLimits& limits) {
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (!text.starts_with("PF") && !text.starts_with("Pf")) {
         throw std::runtime_error("not a PFM file: must begin with PF or Pf");
@@ -75,7 +75,7 @@ ImageContents decode_pfm(BytesView bytes) {
     const auto width = take_number<std::int64_t>(text);
     const auto height = take_number<std::int64_t>(text);
     const auto scale = take_number<double>(text);
-    check_image_size(width, height, kMaxImageSide);
+    check_image_size(width, height, limits.side, limits.pixels);
     if (!std::isfinite(scale) || scale == 0) throw std::runtime_error("the scale must be finite and not 0");
 
     const std::size_t channels = kind == "PF" ? 3 : 1;

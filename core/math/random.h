@@ -35,10 +35,11 @@ constexpr RandomSeed random_seed(std::uint64_t seed, Sampler sampler = Sampler::
 /// What a block of four numbers is for: a part of its key, so that a purpose added here changes no number of another.
 /// Each purpose has a block for every step of a path (path.h); what happens once in a path uses step 0.
 enum class RandomPurpose : std::uint32_t {
-    Film,     ///< 0, 1: place in the pixel; 2, 3: place on the lens. Once
-    Shutter,  ///< 0: time. Once
-    Scatter,  ///< 0, 1: direction; 2: reflect or refract; 3: roulette
-    Light,    ///< 0, 3: which light; 1, 2: where on it
+    Film,         ///< 0, 1: place in the pixel; 2, 3: place on the lens. Once
+    Shutter,      ///< 0: time. Once
+    Scatter,      ///< 0, 1: direction; 2: reflect or refract; 3: roulette
+    Light,        ///< 0, 3: which light; 1, 2: where on it
+    Environment,  ///< 0, 1: which row of the image around the scene; 2, 3: which texel of it
 };
 
 namespace detail {

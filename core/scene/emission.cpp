@@ -1,5 +1,6 @@
 #include "core/scene/emission.h"
 
+#include <cmath>
 #include <numbers>
 #include <numeric>
 
@@ -23,6 +24,21 @@ double mean_colour(const Texture& texture) {
     return std::accumulate(texels.begin(), texels.end(), 0.0) / static_cast<double>(texels.size());
 }
 
+/// Of the sphere around the box of all shapes that have an end; 1 where there is none, and no other light to choose.
+double enclosing_radius(const Scene& scene) {
+    Eigen::AlignedBox3d box;
+    for (const Sphere& sphere : scene.spheres) {
+        const Vector3d reach = Vector3d::Constant(sphere.radius);
+        for (const Vector3d& center : {sphere.center0, sphere.center1})
+            box.extend(center - reach).extend(center + reach);
+    }
+    for (const Quad& quad : scene.quads) {
+        for (const Vector3d& corner : {quad.corner, Vector3d(quad.corner + quad.edge_u)})
+            box.extend(corner).extend(Vector3d(corner + quad.edge_v));
+    }
+    return box.isEmpty() ? 1 : box.diagonal().norm() / 2;
+}
+
 }  // namespace
 
 EmittedPower::EmittedPower(const Scene& scene) : scene_(scene) {
@@ -43,6 +59,25 @@ double EmittedPower::of(const Quad& quad) const {
     const auto material_id = static_cast<std::size_t>(quad.material_id);
     const double area = quad.edge_u.cross(quad.edge_v).norm();
     return mean_radiance_[material_id] * area * (scene_.materials[material_id].front_only ? 1 : 2);
+}
+
+double EmittedPower::of(const Background& background) const {
+    if (!background.image) return 0;
+    const Image& image = *background.image;
+    double radiance = 0;  // times solid angle
+    for (std::int64_t row = 0; row < image.height; ++row) {
+        const float* first = image.pixel(0, row);
+        radiance += std::accumulate(first, first + 3 * image.width, 0.0) / 3 * texel_solid_angle(image, row);
+    }
+    const double radius = enclosing_radius(scene_);
+    return background.scale * radiance * radius * radius;  // the area 4 pi r^2 times the mean over 4 pi
+}
+
+double texel_solid_angle(const Image& image, std::int64_t row) {
+    const double half = std::numbers::pi / static_cast<double>(image.height) / 2;
+    const double middle = half * static_cast<double>(2 * row + 1);
+    // The difference of the cosines of its edges, without cancellation.
+    return 2 * std::numbers::pi / static_cast<double>(image.width) * 2 * std::sin(middle) * std::sin(half);
 }
 
 }  // namespace raypool

@@ -17,10 +17,15 @@ class EmittedPower {
 
     [[nodiscard]] double of(const Sphere& sphere) const;
     [[nodiscard]] double of(const Quad& quad) const;
+    /// What the image of a background, if there is one, sends through the sphere around all shapes that have an end.
+    [[nodiscard]] double of(const Background& background) const;
 
   private:
     const Scene& scene_;
     std::vector<double> mean_radiance_;  ///< by material
 };
+
+/// The solid angle of each texel in row `row` of an image all around.
+double texel_solid_angle(const Image& image, std::int64_t row);
 
 }  // namespace raypool

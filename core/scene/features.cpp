@@ -46,6 +46,8 @@ Features scene_features(const Scene& scene) {
         features.lights |= power.of(quad) > 0;
     }
     for (const Plane& plane : scene.planes) add_material(plane.material_id);
+    features.environment = scene.background.image != nullptr;
+    features.lights |= power.of(scene.background) > 0;
     features.planar = !scene.quads.empty() || !scene.planes.empty();
     features.defocus = scene.camera.defocus_angle_degrees > 0;
     return features;

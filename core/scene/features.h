@@ -15,16 +15,17 @@
 namespace raypool {
 
 struct Features {
-    bool motion = false;      ///< a sphere moves while the shutter is open: rays carry a time
-    bool defocus = false;     ///< the lens has an area
-    bool planar = false;      ///< quads or planes
-    bool metal = false;       ///< mirrors
-    bool fuzz = false;        ///< mirrors that are not perfect
-    bool dielectric = false;  ///< glass
-    bool emissive = false;    ///< surfaces that shine
-    bool checker = false;     ///< 3-D checkers
-    bool uv = false;          ///< textures that need surface coordinates: uv checkers and images
-    bool lights = false;      ///< emissive quads or spheres: light sampling is possible
+    bool motion = false;       ///< a sphere moves while the shutter is open: rays carry a time
+    bool defocus = false;      ///< the lens has an area
+    bool planar = false;       ///< quads or planes
+    bool metal = false;        ///< mirrors
+    bool fuzz = false;         ///< mirrors that are not perfect
+    bool dielectric = false;   ///< glass
+    bool emissive = false;     ///< surfaces that shine
+    bool checker = false;      ///< 3-D checkers
+    bool uv = false;           ///< textures that need surface coordinates: uv checkers and images
+    bool lights = false;       ///< emissive quads or spheres, or an image around the scene: light sampling is possible
+    bool environment = false;  ///< the background is an image
 
     bool operator==(const Features&) const = default;
 };
@@ -34,7 +35,7 @@ struct FeatureName {
     const char* name;
     bool Features::*member;
 };
-inline constexpr std::array<FeatureName, 10> kFeatureNames{{{"motion", &Features::motion},
+inline constexpr std::array<FeatureName, 11> kFeatureNames{{{"motion", &Features::motion},
                                                             {"defocus", &Features::defocus},
                                                             {"planar", &Features::planar},
                                                             {"metal", &Features::metal},
@@ -43,7 +44,8 @@ inline constexpr std::array<FeatureName, 10> kFeatureNames{{{"motion", &Features
                                                             {"emissive", &Features::emissive},
                                                             {"checker", &Features::checker},
                                                             {"uv", &Features::uv},
-                                                            {"lights", &Features::lights}}};
+                                                            {"lights", &Features::lights},
+                                                            {"environment", &Features::environment}}};
 
 /// True when code compiled for `a` can render a scene with features `b`.
 constexpr bool covers(const Features& a, const Features& b) {
@@ -66,10 +68,10 @@ constexpr std::size_t ray_record_bytes(const Features& features, std::size_t sca
 /// The names of the features needed, in the order of kFeatureNames.
 std::vector<std::string> feature_names(const Features& features);
 
-inline constexpr Features kEverything{true, true, true, true, true, true, true, true, true, true};
+inline constexpr Features kEverything{true, true, true, true, true, true, true, true, true, true, true};
 
 /// All but light sampling.
-inline constexpr Features kAllButLights{true, true, true, true, true, true, true, true, true, false};
+inline constexpr Features kAllButLights{true, true, true, true, true, true, true, true, true, false, true};
 
 /// The sets of features that the engines are compiled for, smallest first. A scene runs on the first that covers it,
 /// counted from kFirstCompiledFeatures on.

@@ -33,10 +33,22 @@ struct CameraDescription {
     double shutter_close = 0;   ///< ... and at center1 being 1; shutter_open <= shutter_close <= 1
 };
 
-/// Radiance of a ray that leaves the scene: bottom + s (top - bottom), s = (d.y + 1) / 2 for the unit direction d.
+/// Radiance of a ray that leaves the scene: bottom + s (top - bottom), s = (d.y + 1) / 2 for the unit direction d; or,
+/// where there is an image, that of the texel in this direction times `scale`.
 struct Background {
     Vector3d bottom{0, 0, 0};  ///< each component in [0, 1e6]
     Vector3d top{0, 0, 0};     ///< equal to bottom for a constant background
+    /// Equirectangular, twice as wide as high, finite and not negative: +y at its top, -z at its centre, +x at three
+    /// quarters of its width.
+    std::shared_ptr<const Image> image = nullptr;
+    double rotation_degrees = 0;  ///< of the image around the y axis, counterclockwise as seen from +y
+    double scale = 1;             ///< of the image, > 0; the product is in [0, 1e6]
+
+    /// No channel is above it in any direction.
+    [[nodiscard]] double brightest() const {
+        return image ? scale * *std::max_element(image->rgb.begin(), image->rgb.end())
+                     : std::max(bottom.maxCoeff(), top.maxCoeff());
+    }
 };
 
 struct Texture {

@@ -35,8 +35,9 @@ class Hasher {
         add_all(from, at, up, fov, defocus, focus, open, close);
     }
     void add(const Background& background) {
-        const auto& [bottom, top] = background;
+        const auto& [bottom, top, image, rotation, scale] = background;
         add_all(bottom, top);
+        if (image) add_all(image, rotation, scale);
     }
     void add(const std::shared_ptr<const Image>& image) {
         if (!image) return add(0);

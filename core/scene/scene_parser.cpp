@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,8 +12,8 @@
 #include "core/base/error.h"
 #include "core/base/json_parser.h"
 #include "core/base/text.h"
-#include "core/image/image_file.h"
 #include "core/scene/json_cursor.h"
+#include "core/scene/scene_images.h"
 
 namespace raypool {
 namespace {
@@ -30,6 +29,7 @@ constexpr double kMinSine = 1e-6;  // of the angle between directions that must 
 // Beyond these angles a tangent of half of them times kMaxLength could leave float.
 constexpr double kMinFovDegrees = 0.001;
 constexpr double kMaxAngleDegrees = 179.9;
+constexpr double kMaxRotationDegrees = 360;
 
 bool are_parallel(const Vector3d& a, const Vector3d& b) {
     return a.normalized().cross(b.normalized()).norm() < kMinSine;
@@ -84,43 +84,42 @@ CameraDescription camera(JsonObject object) {
     return camera;
 }
 
-Background background(const JsonCursor& place) {
+/// Refuses what is multiplied by a factor beyond the range of radiance.
+void check_brightest(const JsonCursor& place, double brightest) {
+    if (brightest > kMaxRadiance) {
+        place.refuse(fmt::format("leave the radiance within [0, {:g}]", kMaxRadiance),
+                     fmt::format("one that reaches {:g}", brightest));
+    }
+}
+
+Background image_background(const JsonCursor& file, JsonObject& object, SceneImages& images) {
+    Background background;
+    if (const auto rotation = object.optional("rotation_degrees")) {
+        background.rotation_degrees = rotation->number(-kMaxRotationDegrees, kMaxRotationDegrees);
+    }
+    const auto scale = object.optional("scale");
+    if (scale) background.scale = scale->number(1 / kMaxRadiance, kMaxRadiance);
+    object.refuse_unknown_keys();
+    background.image = images.environment(file);
+    check_brightest(scale ? *scale : file, background.brightest());
+    return background;
+}
+
+Background background(const JsonCursor& place, SceneImages& images) {
     if (place.is_array()) {
         const Vector3d radiance = place.vector3(0, kMaxRadiance);
         return {radiance, radiance};
     }
-    if (!place.is_object()) place.refuse("be a colour [r, g, b] or an object with bottom and top");
+    if (!place.is_object()) place.refuse("be a colour [r, g, b] or an object with bottom and top, or with an image");
     JsonObject object(place);
+    if (const auto image = object.optional("image")) return image_background(*image, object, images);
     Background gradient{object.required("bottom").vector3(0, kMaxRadiance),
                         object.required("top").vector3(0, kMaxRadiance)};
     object.refuse_unknown_keys();
     return gradient;
 }
 
-/// The texture's file lies below `folder` wherever links lead: a scene from elsewhere opens nothing else.
-std::shared_ptr<const Image> image_below(const fs::path& folder, const JsonCursor& place, std::int64_t max_texels) {
-    const fs::path relative = place.text();
-    const bool goes_up = std::find(relative.begin(), relative.end(), "..") != relative.end();
-    if (relative.is_absolute() || goes_up) place.refuse("be a path below the scene's folder, without \"..\"");
-
-    std::error_code error;
-    const fs::path root = fs::weakly_canonical(folder.empty() ? "." : folder, error);
-    const fs::path file = error ? fs::path() : fs::weakly_canonical(root / relative, error);
-    if (error) place.refuse("name a file", error.message());
-    const auto root_end = std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first;
-    if (root_end != root.end()) {
-        place.refuse("stay below the scene's folder", "a link to " + file.string());
-    }
-
-    try {
-        return std::make_shared<const Image>(read_texture(folder / relative, max_texels));
-    } catch (const InputError& broken) {
-        place.refuse("name a PNG image that can be read", broken.what());
-    }
-}
-
-/// `texels_left` is what the images of the scene may still hold together: a small file can be a large image.
-Texture texture(const fs::path& folder, JsonObject object, std::int64_t& texels_left) {
+Texture texture(SceneImages& images, JsonObject object) {
     using Kind = Texture::Kind;
     Texture texture;
     const std::string type = object.required("type").one_of({"solid", "checker_3d", "checker_uv", "image"});
@@ -129,8 +128,7 @@ Texture texture(const fs::path& folder, JsonObject object, std::int64_t& texels_
         texture.even = object.required("color").vector3(0, kMaxRadiance);
     } else if (type == "image") {
         texture.kind = Kind::Image;
-        texture.image = image_below(folder, object.required("file"), texels_left);
-        texels_left -= std::int64_t{texture.image->width} * texture.image->height;
+        texture.image = images.texture(object.required("file"));
         if (const auto wrap = object.optional("wrap")) {
             texture.wrap = wrap->one_of({"repeat", "clamp"}) == "repeat" ? Texture::Wrap::Repeat : Texture::Wrap::Clamp;
         }
@@ -150,7 +148,7 @@ Texture texture(const fs::path& folder, JsonObject object, std::int64_t& texels_
 /// Fills a Scene from the top of the document downwards, since later parts name earlier ones.
 class SceneReader {
   public:
-    explicit SceneReader(fs::path texture_folder) : texture_folder_(std::move(texture_folder)) {}
+    explicit SceneReader(const fs::path& image_folder) : images_(image_folder) {}
 
     Scene read(const JsonCursor& root) {
         JsonObject object(root);
@@ -158,11 +156,10 @@ class SceneReader {
         scene_.description = object.required("description").text();
         if (const auto image = object.optional("image")) read_image_size(JsonObject(*image));
         scene_.camera = camera(JsonObject(object.required("camera")));
-        scene_.background = background(object.required("background"));
+        scene_.background = background(object.required("background"), images_);
         if (const auto textures = object.optional("textures")) {
-            std::int64_t texels_left = kMaxSceneTexels;
             for (const auto& [name, place] : textures->members()) {
-                texture_ids_[name] = add(texture(texture_folder_, JsonObject(place), texels_left));
+                texture_ids_[name] = add(texture(images_, JsonObject(place)));
             }
         }
         if (const auto materials = object.optional("materials")) {
@@ -216,11 +213,7 @@ class SceneReader {
         if (const auto strength = object.optional("strength")) {
             material.strength = strength->number(1 / kMaxRadiance, kMaxRadiance);
             const Texture& texture = scene_.textures[static_cast<std::size_t>(material.texture_id)];
-            const double brightest = material.strength * texture.brightest();
-            if (brightest > kMaxRadiance) {
-                strength->refuse(fmt::format("leave the radiance within [0, {:g}]", kMaxRadiance),
-                                 fmt::format("one that reaches {:g}", brightest));
-            }
+            check_brightest(*strength, material.strength * texture.brightest());
         }
         if (const auto sides = object.optional("sides"))
             material.front_only = sides->one_of({"both", "front"}) == "front";
@@ -280,7 +273,7 @@ class SceneReader {
         object.refuse_unknown_keys();
     }
 
-    fs::path texture_folder_;
+    SceneImages images_;
     Scene scene_;
     std::map<std::string, std::int32_t> texture_ids_;
     std::map<std::string, std::int32_t> material_ids_;

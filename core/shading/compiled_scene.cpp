@@ -31,7 +31,7 @@ class Compiler {
         : scene_(scene),
           coincidence_(coincidence),
           features_(scene_features(scene)),
-          max_radiance_(std::max(scene.background.bottom.maxCoeff(), scene.background.top.maxCoeff())) {}
+          max_radiance_(scene.background.brightest()) {}
 
     CompiledScene<Scalar> compile() {
         check_size();
@@ -40,6 +40,7 @@ class Compiler {
         add_blocks(scene_, coincidence_, out_);
         if (features_.lights) out_.lights = light_table<Scalar>(scene_, coincidence_.is_hidden);
         features_.lights = !out_.lights.rows.empty();
+        out_.environment = environment_tables<Scalar>(scene_.background, out_.lights.environment_chance);
         SceneTables<Scalar>::for_each_table(out_, [](auto& table) { table.shrink_to_fit(); });
 
         CompiledScene<Scalar> compiled(std::move(out_));
@@ -50,6 +51,12 @@ class Compiler {
         const Vector3d middle = 0.5 * (scene_.background.bottom + scene_.background.top);
         const Vector3d slope = 0.5 * (scene_.background.top - scene_.background.bottom);
         compiled.sky = {middle.cast<Scalar>(), slope.cast<Scalar>()};
+        if (const Image* image = scene_.background.image.get()) {
+            compiled.environment.width = static_cast<std::int32_t>(image->width);
+            compiled.environment.height = static_cast<std::int32_t>(image->height);
+            const double turns = scene_.background.rotation_degrees / 360;
+            compiled.environment.rotation = static_cast<Scalar>(turns - std::floor(turns));
+        }
         compiled.max_radiance = max_radiance_;
         compiled.max_albedo = max_albedo_;
         compiled.max_diffuse_albedo = max_diffuse_albedo_;

@@ -16,6 +16,7 @@
 #include "core/scene/features.h"
 #include "core/scene/scene.h"
 #include "core/shading/camera.h"
+#include "core/shading/environment.h"
 #include "core/shading/light_table.h"
 #include "core/shading/textures.h"
 
@@ -108,6 +109,7 @@ struct SceneTables : ShapeTables<Scalar> {
     std::vector<ImageView<Scalar>> images;     ///< by texture id, beside `textures`
     std::vector<Scalar> texels;
     LightTable<Scalar> lights;
+    EnvironmentTables<Scalar> environment;
 
     /// Calls visit(std::vector&) for every table: the one list of them.
     template <class Self, class Visit>
@@ -119,6 +121,9 @@ struct SceneTables : ShapeTables<Scalar> {
         visit(self.texels);
         visit(self.lights.rows);
         visit(self.lights.weights);
+        visit(self.environment.texels);
+        visit(self.environment.rows);
+        visit(self.environment.entries);
         ShapeTables<Scalar>::for_each_table(self, visit);
     }
 };
@@ -131,9 +136,10 @@ struct SceneView : ShapeView<Scalar> {
     std::int64_t height = 0;
     Camera<Scalar> camera;
     Sky<Scalar> sky;
-    double max_radiance = 0;        ///< no path carries more to the image in any channel
-    double max_albedo = 0;          ///< no hit leaves a path more of its throughput in any channel
-    double max_diffuse_albedo = 0;  ///< no hit on a diffuse surface does
+    EnvironmentView<Scalar> environment;  ///< in place of the sky if it has texels
+    double max_radiance = 0;              ///< no path carries more to the image in any channel
+    double max_albedo = 0;                ///< no hit leaves a path more of its throughput in any channel
+    double max_diffuse_albedo = 0;        ///< no hit on a diffuse surface does
 
     std::span<const SurfaceRow<Scalar>> surfaces;
     std::span<const TextureRow<Scalar>> textures;
@@ -166,6 +172,9 @@ class CompiledScene : public SceneView<Scalar> {
         this->images = tables_->images;
         this->lights = tables_->lights.rows;
         this->light_weights = tables_->lights.weights;
+        this->environment.texels = tables_->environment.texels;
+        this->environment.rows = tables_->environment.rows;
+        this->environment.entries = tables_->environment.entries;
     }
 
     [[nodiscard]] const SceneTables<Scalar>& tables() const { return *tables_; }

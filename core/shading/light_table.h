@@ -1,4 +1,5 @@
-/// The lights of a scene that are sampled: emissive quads and spheres, chosen by their power.
+/// The lights of a scene that are sampled: emissive quads and spheres, and an image around the scene, chosen by their
+/// power.
 #pragma once
 
 #include <vector>
@@ -8,9 +9,8 @@
 
 namespace raypool {
 
-/// A light: where points on it are, and its entry in the alias table (Vose, "A Linear Algorithm for Generating Random
-/// Numbers with a Given Distribution", 1991). Row i of n is kept with the probability kThreshold, or makes place for
-/// the row kAlias.
+/// A light: where points on it are, and its entry in the alias table (alias_table.h). Of the image around the scene all
+/// is 0 but that, and the primitive, which is kNoPrimitive.
 template <class Scalar>
 struct alignas(4 * sizeof(Scalar)) LightRow {
     enum Column {
@@ -33,6 +33,7 @@ struct LightTable {
     /// its area; 0 of what is no light. It is exactly that with which sample_light() chooses from the rows, whose
     /// random numbers are multiples of 2^-24; so it differs from the share of the power by rounding to such steps.
     std::vector<Scalar> weights;
+    double environment_chance = 0;  ///< the probability that the image around the scene is chosen
 };
 
 /// Ids are spheres', then quads', then planes', as everywhere. Planes have no end and are no lights, and what is hidden

@@ -2,7 +2,8 @@
 ///
 /// A light is chosen by its power. Of a quad a point is sampled by area; of a sphere a direction by solid angle, within
 /// the cone that it fills (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations",
-/// 1996), and all around where the point is in it.
+/// 1996), and all around where the point is in it. Of an image around the scene the direction is drawn by its
+/// brightness (environment.h).
 #pragma once
 
 #include <numbers>
@@ -26,22 +27,19 @@ inline constexpr std::int32_t kMostSampledHits = 255;
 template <class Real>
 struct LightSample {
     Vec3<Real> direction;    ///< unit
-    Real t;                  ///< how far the light is; infinity where it cannot be seen from here
-    Int<Real> primitive_id;  ///< which it is
+    Real t;                  ///< how far the light is
+    Int<Real> primitive_id;  ///< which it is; kNoPrimitive of the image around the scene
+    Mask<Real> is_seen;      ///< unless anything lies before it; not where the light is turned edge on
     Mask<Real> is_front;     ///< it is seen from its outward side
+
+    /// Whether it is the image around the scene.
+    template <Features features>
+    [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_environment() const {
+        return features.environment ? as_mask<Real>(primitive_id == Int<Real>(kNoPrimitive)) : Mask<Real>(false);
+    }
 };
 
 namespace detail {
-
-/// table[index], by lane.
-template <class Real>
-RAYPOOL_INLINE Real gather(const ScalarOf<Real>* table, const Int<Real>& index) {
-    if constexpr (Simd<Real>) {
-        return Real([&](auto i) { return table[index[i]]; });
-    } else {
-        return table[index];
-    }
-}
 
 /// 1 - cos of half the angle that a sphere fills: to full precision for one that is small or far.
 template <class Real>
@@ -85,7 +83,8 @@ RAYPOOL_INLINE Real light_density(const Ray<Real>& ray, const Real& t, const Rea
 }
 
 /// Samples a light, of a scene that has some, from where a ray starts, at `time`, by a block of RandomPurpose::Light.
-/// The light's SurfaceRow, which emitted_radiance() and light_density() read, is put into `row`.
+/// The light's SurfaceRow, which emitted_radiance() and light_density() read, is put into `row`. Where the light is the
+/// image around the scene, sample_environment() says the rest: here it is not seen, and the row is some row.
 template <Features features, class Real>
 RAYPOOL_INLINE LightSample<Real> sample_light(const SceneView<ScalarOf<Real>>& scene, const RayStart<Real>& start,
                                               const Real& time, const std::array<Real, 4>& random, Real* row) {
@@ -93,17 +92,19 @@ RAYPOOL_INLINE LightSample<Real> sample_light(const SceneView<ScalarOf<Real>>& s
     using Light = LightRow<S>;
     using Row = SurfaceRow<S>;
     const auto load = [&](const Int<Real>& which, Real* light) {
-        load_rows<Light::kColumns, Real>(scene.lights.data()->value, Light::kColumns, which, light);
+        detail::load_light_rows<Light::kColumns, Real>(scene.lights.data()->value, which, light);
     };
-    const auto count = static_cast<S>(scene.lights.size());
     Real light[Light::kColumns];
-    const Int<Real> drawn = to_int<Real>(min(floor(random[0] * Real(count)), Real(count - 1)));
+    const Int<Real> drawn = draw_entry<Real>(random[0], static_cast<S>(scene.lights.size()));
     load(drawn, light);
     load(select(random[3] < light[Light::kThreshold], drawn, bits_of<Real>(light[Light::kAlias])), light);
 
     LightSample<Real> sample;
     sample.primitive_id = bits_of<Real>(light[Light::kPrimitive]);
-    load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, sample.primitive_id, row);
+    const Mask<Real> is_around = sample.template is_environment<features>();
+    const Int<Real> row_id =
+        features.environment ? select(is_around, Int<Real>(0), sample.primitive_id) : sample.primitive_id;
+    detail::load_light_rows<Row::kColumns, Real>(scene.surfaces.data()->value, row_id, row);
     const auto part = [&](int first) { return vec3<Real>(light[first], light[first + 1], light[first + 2]); };
     const Real radius = light[Light::kRadius];
     const Mask<Real> is_sphere = radius > Real(0);
@@ -118,7 +119,7 @@ RAYPOOL_INLINE LightSample<Real> sample_light(const SceneView<ScalarOf<Real>>& s
     sample.direction = vec3<Real>(Real(1), Real(0), Real(0));
     sample.t = Real(kInfinity<Real>);
     sample.is_front = Mask<Real>(false);
-    if (!all(is_sphere)) {
+    if (!all(is_sphere || is_around)) {
         const Vec3<Real> across = along<Real>(to, random[1], part(Light::kEdgeU));
         const Vec3<Real> point = along<Real>(across, random[2], part(Light::kEdgeV));
         const Mask<Real> is_apart = !is_sphere && dot<Real>(point, point) > Real(0);
@@ -154,6 +155,7 @@ RAYPOOL_INLINE LightSample<Real> sample_light(const SceneView<ScalarOf<Real>>& s
         sample.t = select(is_sphere, select(is_passed, dot<Real>(to, direction), met), sample.t);
         sample.is_front = (is_sphere && is_outside) || (!is_sphere && sample.is_front);
     }
+    sample.is_seen = sample.t < Real(kInfinity<Real>) && !is_around;
     return sample;
 }
 

@@ -20,6 +20,29 @@ RAYPOOL_INLINE Vec3<Real> sky_radiance(const Sky<ScalarOf<Real>>& sky, const Vec
     return along<Real>(broadcast<Real>(sky.middle), direction[1], broadcast<Real>(sky.slope));
 }
 
+/// What a path brings home whose ray met nothing. `arriving_density` is RayRecord::density; where lights were sampled
+/// too, an image around the scene is shared with them (share_with_lights()).
+template <Features features, class Real>
+RAYPOOL_INLINE Vec3<Real> escaping_radiance(const SceneView<ScalarOf<Real>>& scene, const Vec3<Real>& direction,
+                                            const Vec3<Real>& throughput,
+                                            [[maybe_unused]] LightSampling sampling = LightSampling::None,
+                                            [[maybe_unused]] const Real& arriving_density = Real(0)) {
+    if constexpr (features.environment) {
+        if (!scene.environment.texels.empty()) {
+            const EnvironmentSight<Real> seen = see_environment<Real>(scene.environment, direction);
+            Vec3<Real> radiance = product<Real>(throughput, seen.radiance);
+            if constexpr (features.lights) {
+                const Mask<Real> is_sampled = arriving_density > Real(0) && seen.density > Real(0);
+                const Real share =
+                    sampling == LightSampling::Mis ? arriving_density / (arriving_density + seen.density) : Real(0);
+                for (int i = 0; i < 3; ++i) radiance[i] = select(is_sampled, radiance[i] * share, radiance[i]);
+            }
+            return radiance;
+        }
+    }
+    return product<Real>(throughput, sky_radiance<Real>(scene.sky, direction));
+}
+
 /// A path after a hit.
 template <class Real>
 struct Scattered {
@@ -78,16 +101,33 @@ RAYPOOL_INLINE void share_with_lights(const SceneView<ScalarOf<Real>>& scene, co
     Real light_row[Row::kColumns];
     const std::array<Real, 4> random = random_block<Real>(key, step, RandomPurpose::Light, seed);
     lights.light = sample_light<features, Real>(scene, out.start, ray.time, random, light_row);
-    const LightSample<Real>& light = lights.light;
+    LightSample<Real>& light = lights.light;
+    const Mask<Real> is_around = light.template is_environment<features>();
+    Real of_light(0);
+    Vec3<Real> radiance = vec3<Real>(Real(0), Real(0), Real(0));
+    if (features.environment && any(is_around)) {
+        const std::array<Real, 4> choice = random_block<Real>(key, step, RandomPurpose::Environment, seed);
+        const EnvironmentSample<Real> around =
+            sample_environment<Real>(scene.environment, choice, random[1], random[2]);
+        light.direction = select<Real>(is_around, around.direction, light.direction);
+        light.is_seen = light.is_seen || is_around;
+        of_light = around.density;
+        radiance = around.radiance;
+    }
     const Real density = bsdf_density<features, Real>(point, material, light.direction);
-    lights.has_shadow_ray = lights.has_shadow_ray && density > Real(0) && light.t < Real(kInfinity<Real>);
+    lights.has_shadow_ray = lights.has_shadow_ray && density > Real(0) && light.is_seen;
     if (none(lights.has_shadow_ray)) return;
     const Ray<Real> shadow_ray{out.start.origin, light.direction, ray.time};
-    const Real weight = detail::gather<Real>(scene.light_weights.data(), light.primitive_id);
-    const Real of_light = light_density<features, Real>(shadow_ray, light.t, weight, light_row);
+    if (!all(is_around)) {
+        const Int<Real> id =
+            features.environment ? select(is_around, Int<Real>(0), light.primitive_id) : light.primitive_id;
+        const Real weight = detail::gather<Real>(scene.light_weights.data(), id);
+        of_light = select(is_around, of_light, light_density<features, Real>(shadow_ray, light.t, weight, light_row));
+        radiance = select<Real>(
+            is_around, radiance,
+            emitted_radiance<features, Real>(scene, shadow_ray, light, light_row, lights.has_shadow_ray && !is_around));
+    }
     const Real share = density / (is_shared ? of_light + density : of_light);
-    const Vec3<Real> radiance =
-        emitted_radiance<features, Real>(scene, shadow_ray, light, light_row, lights.has_shadow_ray);
     for (int i = 0; i < 3; ++i) lights.radiance[i] = out.throughput[i] * (radiance[i] * share);
     lights.has_shadow_ray = lights.has_shadow_ray && carries_light<Real>(lights.radiance);
 }

@@ -12,6 +12,7 @@ __global__ void trace_segment(SceneView<float> scene, RandomSeed seed, const flo
                                            sphere[3], false);
     const Scattered<float> next = scatter<kEverything, float>(scene, ray, t, id, vec3<float>(1.0F, 1.0F, 1.0F), key, 1U,
                                                               seed, 0, true);
-    const Vec3<float> sky = sky_radiance<float>(scene.sky, next.direction);
-    for (int k = 0; k < 3; ++k) out[k] = next.throughput[k] * sky[k] + next.start.origin[k];
+    const Vec3<float> sky = escaping_radiance<kEverything, float>(scene, next.direction, next.throughput,
+                                                                  LightSampling::Mis, 1.0F);
+    for (int k = 0; k < 3; ++k) out[k] = sky[k] + next.start.origin[k];
 }

@@ -19,8 +19,8 @@ RenderSettings two_samples(LightSampling sampling) {
 }
 
 /// One set of features compiled into the iterative tracer.
-template <Features features, LightSampling sampling = LightSampling::Mis>
-Rendered render_with(const CompiledScene<float>& scene) {
+template <Features features>
+Rendered render_with(const CompiledScene<float>& scene, LightSampling sampling = LightSampling::Mis) {
     const RenderSettings settings = two_samples(sampling);
     return rendered_by(scene, settings, [&](Framebuffer& framebuffer) {
         return render_whole(
@@ -35,7 +35,7 @@ constexpr Features everything_but(std::size_t feature) {
     return features;
 }
 
-using RenderFunction = Rendered (*)(const CompiledScene<float>&);
+using RenderFunction = Rendered (*)(const CompiledScene<float>&, LightSampling);
 
 /// For each feature, in the order of kFeatureNames, the tracer compiled without it.
 constexpr auto kRenderWithout = []<std::size_t... feature>(std::index_sequence<feature...>) {
@@ -43,8 +43,8 @@ constexpr auto kRenderWithout = []<std::size_t... feature>(std::index_sequence<f
 }
 (std::make_index_sequence<kFeatureNames.size()>());
 
-const std::vector<std::string> kScenes{"paper",   "furnace",  "mirror_corridor", "glass_stack",
-                                       "cornell", "half_sky", "one_sphere",      "textures"};
+const std::vector<std::string> kScenes{"paper",    "furnace",    "mirror_corridor", "glass_stack", "cornell",
+                                       "half_sky", "one_sphere", "textures",        "sky_image"};
 
 class LeavingOut : public testing::TestWithParam<std::size_t> {};
 
@@ -56,7 +56,8 @@ TEST_P(LeavingOut, WhatASceneLacksChangesNoBit) {
         if (scene.features.*feature.member) continue;
         ++lacking_count;
         EXPECT_TRUE(same_image(fmt::format("without_{}_{}", feature.name, name), render_with<kEverything>(scene),
-                               kRenderWithout[GetParam()](scene), fmt::format("{} without {}", name, feature.name)));
+                               kRenderWithout[GetParam()](scene, LightSampling::Mis),
+                               fmt::format("{} without {}", name, feature.name)));
     }
     EXPECT_GT(lacking_count, 0);
 }
@@ -68,7 +69,9 @@ TEST_P(LeavingOut, WhatASceneNeedsChangesIt) {
         const CompiledScene<float> scene = compile<float>(small_scene(name, 24));
         if (!(scene.features.*feature.member) || name == "furnace") continue;  // a furnace shows no material
         ++needing_count;
-        EXPECT_NE(kRenderWithout[GetParam()](scene).hash(), render_with<kEverything>(scene).hash())
+        // Code without an image around the scene cannot sample it.
+        const auto sampling = feature.member == &Features::environment ? LightSampling::None : LightSampling::Mis;
+        EXPECT_NE(kRenderWithout[GetParam()](scene, sampling).hash(), render_with<kEverything>(scene, sampling).hash())
             << name << " looks the same without " << feature.name;
     }
     EXPECT_GT(needing_count, 0);
@@ -140,7 +143,9 @@ TEST(NeutralTwin, OfEveryFeatureIsTheSameImage) {
     lens.focus_distance = 1;
 
     // Without light sampling, with which sums of a scene that has lights go by other steps.
-    const auto render_twin = render_with<kEverything, LightSampling::None>;
+    const auto render_twin = [](const CompiledScene<float>& scene) {
+        return render_with<kEverything>(scene, LightSampling::None);
+    };
     const Rendered plain = render_twin(compile<float>(plain_scene()));
     for (const auto& twin : twins) {
         bool Features::*feature = twin.first;
@@ -152,6 +157,23 @@ TEST(NeutralTwin, OfEveryFeatureIsTheSameImage) {
         EXPECT_TRUE(same_image(fmt::format("twin_{}", named->name), plain, render_twin(compiled),
                                fmt::format("a neutral {}", named->name)));
     }
+}
+
+/// An image of one colour is a background of that colour.
+TEST(NeutralTwin, OfAnImageAroundTheSceneIsTheSameImage) {
+    Scene scene = plain_scene();
+    const Vector3d sky(1, 0.75, 0.5);
+    scene.background = {sky, sky};
+    const Rendered plain = render_with<kEverything>(compile<float>(scene), LightSampling::None);
+    auto image = std::make_shared<Image>(8, 4);
+    for (std::size_t i = 0; i < image->rgb.size(); ++i) image->rgb[i] = static_cast<float>(sky[i % 3]) / 2;
+    scene.background = {};
+    scene.background.image = image;
+    scene.background.scale = 2;
+    const CompiledScene<float> compiled = compile<float>(scene);
+    EXPECT_TRUE(compiled.features.environment);
+    EXPECT_TRUE(same_image("twin_environment", plain, render_with<kEverything>(compiled, LightSampling::None),
+                           "an image of one colour"));
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ void render_a_little(Scene scene) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     try {
-        const Scene scene = parse_scene(text, "fuzz.json", RAYPOOL_SOURCE_DIR "/scenes/textures");
+        const Scene scene = parse_scene(text, "fuzz.json", RAYPOOL_SOURCE_DIR "/tests/fuzz/images");
         render_a_little<float>(scene);
         render_a_little<double>(scene);
     } catch (const InputError& refusal) {

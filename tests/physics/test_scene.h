@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 
 #include "tests/small_render.h"
 
@@ -50,6 +51,19 @@ struct TestScene : Scene {
         return static_cast<std::int32_t>(materials.size()) - 1;
     }
 };
+
+/// Of twice as many columns as rows, for a background: each texel is radiance(column, row).
+template <class Radiance>
+std::shared_ptr<const Image> image_of(std::int64_t height, Radiance radiance) {
+    auto image = std::make_shared<Image>(2 * height, height);
+    for (std::int64_t row = 0; row < height; ++row) {
+        for (std::int64_t column = 0; column < 2 * height; ++column) {
+            const Vector3d texel = radiance(column, row);
+            for (int i = 0; i < 3; ++i) image->pixel(column, row)[i] = static_cast<float>(texel[i]);
+        }
+    }
+    return image;
+}
 
 /// The radiance of every pixel in the first channel, in the order of the framebuffer, exactly as summed.
 inline std::vector<double> pixel_values(const Rendered& rendered) {

@@ -181,8 +181,24 @@ class Tracer {
     }
 
     [[nodiscard]] Vec sky(Vec direction) const {
+        if (scene_.background.image) return sky_image(direction);
         const double up = (direction.y + 1) / 2;
         return (1 - up) * vec(scene_.background.bottom) + up * vec(scene_.background.top);
+    }
+
+    /// The texel in a direction, by spherical coordinates: longitude grows from -z, in the middle, to +x, at three
+    /// quarters; the image is turned by the right-hand rule around +y.
+    [[nodiscard]] Vec sky_image(Vec direction) const {
+        const Image& image = *scene_.background.image;
+        const double longitude = std::atan2(direction.x, -direction.z) + scene_.background.rotation_degrees * kPi / 180;
+        const double latitude = std::asin(std::clamp(direction.y, -1.0, 1.0));
+        const auto place = [](double part, std::int64_t size) {
+            return std::clamp<std::int64_t>(static_cast<std::int64_t>(part * static_cast<double>(size)), 0, size - 1);
+        };
+        const double around = 0.5 + longitude / (2 * kPi);
+        const float* texel =
+            image.pixel(place(around - std::floor(around), image.width), place(0.5 - latitude / kPi, image.height));
+        return scene_.background.scale * Vec{texel[0], texel[1], texel[2]};
     }
 
     /// By Fresnel's equations for unpolarised light (Born and Wolf, "Principles of Optics", 1.5.2); `eta` is the index

@@ -24,6 +24,12 @@ TEST(DimmestLight, IsTheLeastThatIsNotBlackOfSkyAndLamps) {
     Scene not_a_lamp = lit_by(0.5, 0.1);
     not_a_lamp.materials[0].kind = Material::Kind::Diffuse;
     EXPECT_EQ(dimmest_light(not_a_lamp), 0.5) << "an albedo is no light";
+    Scene around = lit_by(0, 7);
+    auto image = std::make_shared<Image>(2, 1);
+    image->rgb = {0, 8, 0, 0, 0, 2};
+    around.background.image = image;
+    around.background.scale = 0.5;
+    EXPECT_EQ(dimmest_light(around), 1);
 }
 
 TEST(Rounding, IsBoundedByHalfAStepOverTheRadiance) {

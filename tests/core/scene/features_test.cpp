@@ -85,6 +85,15 @@ TEST(Features, IncludeDefocusOnlyWithALens) {
     EXPECT_TRUE(scene_features(scene).defocus);
 }
 
+TEST(Features, IncludeAnImageAroundTheSceneAndLightsUnlessItIsBlack) {
+    Scene scene = with_sphere(0);
+    auto image = std::make_shared<Image>(2, 1);
+    scene.background.image = image;
+    EXPECT_EQ(scene_features(scene), Features{.environment = true});
+    image->rgb[4] = 0.5;
+    EXPECT_EQ(scene_features(scene), (Features{.lights = true, .environment = true}));
+}
+
 TEST(Features, RunOnTheSmallestCompiledSetThatCoversThem) {
     for (const std::string& name : builtin_scene_names()) {
         const Features features = scene_features(builtin_scene(name));

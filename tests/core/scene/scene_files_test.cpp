@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "core/scene/scene_hash.h"
 #include "core/scene/scene_reader.h"
 #include "tests/core/image/image_samples.h"
 #include "tests/core/scene/scene_text.h"
@@ -37,6 +40,11 @@ class SceneFolder : public testing::Test {
     std::string refusal_of_texture(const std::string& file) const {
         const std::string texture = R"("textures": {"t": {"type": "image", "file": ")" + file + R"("}}, "shapes")";
         return refusal([&] { parse_scene(with(kSmallest, "\"shapes\"", texture), "a.json", folder_ / "scene"); });
+    }
+
+    std::string refusal_of_environment(const std::string& file, const std::string& keys = "") const {
+        const std::string image = R"({"image": ")" + file + "\"" + keys + "}";
+        return refusal([&] { parse_scene(with(kSmallest, "[0.25, 0.5, 1]", image), "a.json", folder_ / "scene"); });
     }
 
     fs::path folder_;
@@ -177,6 +185,73 @@ TEST_F(SceneFolder, TexturesTogetherHoldNoMoreThanTheirLimit) {
     const std::string message = refusal([&] { read_scene(folder_ / "scene/a.json"); });
     EXPECT_NE(message.find("/textures/b/file: must name a PNG image that can be read"), std::string::npos) << message;
     EXPECT_NE(message.find("got 16384 x 16384"), std::string::npos) << message;
+}
+
+TEST_F(SceneFolder, AnImageAroundTheSceneIsReadOrRefusedNamingSceneAndImage) {
+    Image image(4, 2);
+    const auto refused = [&](const std::string& name, const std::string& keys = "") {
+        write_image(folder_ / "scene" / name, image, {});
+        return refusal_of_environment(name, keys);
+    };
+    for (const char* name : {"sky.exr", "sky.pfm", "sky.EXR"}) EXPECT_EQ(refused(name), "") << name;
+    image.rgb[5] = 1e6F;
+    EXPECT_EQ(refused("bright.pfm", R"(, "scale": 1.0, "rotation_degrees": -360)"), "");
+    EXPECT_EQ(refused("bright.pfm", R"(, "scale": 2)"),
+              "a.json: /background/scale: must leave the radiance within [0, 1e+06], got one that reaches 2e+06");
+    image.rgb[5] = 1e30F;
+    EXPECT_EQ(refused("bright.exr"),
+              "a.json: /background/image: must leave the radiance within [0, 1e+06], got one that reaches 1e+30");
+
+    const std::string rule = "a.json: /background/image: must name an image whose values are finite and not negative";
+    for (const auto& [value, says] : {std::pair{-1.0F, "-1"},
+                                      {std::numeric_limits<float>::infinity(), "inf"},
+                                      {std::numeric_limits<float>::quiet_NaN(), "nan"}}) {
+        image.rgb[5] = value;
+        for (const std::string name : {"bad.exr", "bad.pfm"})
+            EXPECT_EQ(refused(name), fmt::format("{}, got {} with {} in column 1 of row 0", rule, name, says));
+    }
+    image = Image(4, 3);
+    EXPECT_EQ(refused("high.exr"),
+              "a.json: /background/image: must name an image twice as wide as high, got high.exr of 4 x 3");
+    image = Image(1, 1);
+    EXPECT_EQ(refused("one.pfm"),
+              "a.json: /background/image: must name an image twice as wide as high, got one.pfm of 1 x 1");
+
+    fs::copy_file(kScenes / "textures/map.png", folder_ / "scene/map.png");
+    write("scene/broken.exr", "no image");
+    write("scene/empty.pfm", "PF\n0 0\n-1\n");
+    write("scene/huge.pfm", "PF\n44721 22361\n-1\n");  // 10^9 pixels
+    write("scene/wide.pfm", "PF\n20000 10000\n-1\n");
+    for (const std::string name : {"map.png", "absent.exr", "broken.exr", "empty.pfm", "huge.pfm", "wide.pfm", "sky"}) {
+        const std::string message = refusal_of_environment(name);
+        const std::string beginning = "a.json: /background/image: must name an EXR or PFM image that can be read, got ";
+        EXPECT_EQ(message.substr(0, beginning.size()), beginning);
+        EXPECT_NE(message.find(name), std::string::npos) << message;
+    }
+    write_image(folder_ / "outside.exr", Image(2, 1), {});
+    fs::create_symlink("../outside.exr", folder_ / "scene/outward.exr");
+    EXPECT_EQ(refusal_of_environment("outward.exr"),
+              "a.json: /background/image: must stay below the scene's folder, "
+              "got a link to " +
+                  fs::canonical(folder_ / "outside.exr").string());
+    EXPECT_EQ(refusal_of_environment("../outside.exr"),
+              "a.json: /background/image: must be a path below the scene's folder, without \"..\", got "
+              "\"../outside.exr\"");
+}
+
+TEST_F(SceneFolder, AnImageAroundTheSceneIsPartOfItsHash) {
+    Image image(4, 2);
+    const auto hash = [&](const std::string& keys) {
+        write_image(folder_ / "scene/sky.exr", image, {});
+        const std::string background = R"({"image": "sky.exr")" + keys + "}";
+        return scene_hash(parse_scene(with(kSmallest, "[0.25, 0.5, 1]", background), "a.json", folder_ / "scene"));
+    };
+    const std::string plain = hash("");
+    EXPECT_EQ(hash(R"(, "rotation_degrees": 0, "scale": 1)"), plain);
+    EXPECT_NE(hash(R"(, "rotation_degrees": 1)"), plain);
+    EXPECT_NE(hash(R"(, "scale": 2)"), plain);
+    image.rgb[0] = 1;
+    EXPECT_NE(hash(""), plain);
 }
 
 TEST_F(SceneFolder, AFileIsReadUpToItsLimitAndNoFurther) {
