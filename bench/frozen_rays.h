@@ -34,6 +34,7 @@ class StageRig {
                    pool_,
                    random_seed(settings_.seed, settings_.sampler),
                    framebuffer_.fixed_point(),
+                   false,
                    recorder != nullptr ? recorder : accumulator_.get()},
           stages_(context_, most_records, 0) {}
     StageRig(const StageRig&) = delete;

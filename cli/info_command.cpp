@@ -8,10 +8,13 @@
 #include <fmt/ranges.h>
 
 #include "cli/commands.h"
+#include "cli/common_options.h"
 #include "cli/print.h"
 #include "core/base/memory.h"
 #include "core/film/light_range.h"
+#include "core/runtime/engine.h"
 #include "core/runtime/environment.h"
+#include "core/runtime/settings_text.h"
 #include "core/scene/scene_reader.h"
 #include "core/shading/compiled_scene.h"
 #include "wavefront/capacity.h"
@@ -80,8 +83,14 @@ void info(const std::string& name) {
     print("which may use: {}; stages of {} rays in float, {} in double; trees {} and {} wide\n",
           fmt::format("{}", fmt::join(widths.instruction_sets, ", ")), widths.float_lanes, widths.double_lanes,
           widths.float_tree_width, widths.double_tree_width);
-    print("ray record: {} bytes in float, {} in double\n", ray_record_bytes(compiled.features, sizeof(float)),
-          ray_record_bytes(compiled.features, sizeof(double)));
+    Features without_lights = compiled.features;
+    without_lights.lights = false;
+    print("ray record: {} bytes in float, {} in double{}\n", ray_record_bytes(compiled.features, sizeof(float)),
+          ray_record_bytes(compiled.features, sizeof(double)),
+          compiled.features.lights
+              ? fmt::format("; {} and {} without light sampling", ray_record_bytes(without_lights, sizeof(float)),
+                            ray_record_bytes(without_lights, sizeof(double)))
+              : "");
     print("tested before the trees: {} spheres, {} planes\n", filled_lanes(compiled.large_spheres),
           filled_lanes(compiled.planes));
     print_tree("sphere", compiled.sphere_tree);
@@ -89,7 +98,9 @@ void info(const std::string& name) {
     print("pool of a thread: {} records, for trees of {} and a second-level cache of {}\n",
           wavefront::pool_capacity(wavefront::PoolSettings{}, compiled), bytes_text(wavefront::tree_bytes(compiled)),
           bytes_text(second_level_cache()));
-    const FixedPoint fixed = FixedPoint::make(1, compiled.max_radiance);
+    ImageSettings settings;  // as a render has them that is told nothing else
+    settings.light_sampling = parse_light_sampling(CommonOptions().light_sampling);
+    const FixedPoint fixed = fixed_point(compiled, settings, 1);
     print("light: radiance {:.3g} to {:.3g}; sums of up to {} samples go by steps of {:.2g}{}\n", dimmest_light(scene),
           compiled.max_radiance, FixedPoint::kExtensibleSamples, 1 / fixed.scale(),
           rounding_of(dimmest_light(scene), fixed) > kFineStep ? ", coarse for the dimmest" : "");

@@ -43,6 +43,11 @@ template <class Real>
 RAYPOOL_INLINE Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
     return mad<Real>(a[0], b[0], mad<Real>(a[1], b[1], a[2] * b[2]));
 }
+template <class Real>
+RAYPOOL_INLINE Vec3<Real> cross(const Vec3<Real>& a, const Vec3<Real>& b) {
+    return vec3<Real>(nmad<Real>(a[2], b[1], a[1] * b[2]), nmad<Real>(a[0], b[2], a[2] * b[0]),
+                      nmad<Real>(a[1], b[0], a[0] * b[1]));
+}
 /// Of each component.
 template <class Real>
 RAYPOOL_INLINE Vec3<Real> product(const Vec3<Real>& a, const Vec3<Real>& b) {

@@ -61,13 +61,16 @@ double greatest_share(double greatest_sample, std::int64_t samples, std::size_t 
     return share * share / static_cast<double>(pixel_count);
 }
 
-/// The most that the squared error of an image is that was estimated as `squared_error`. No single sample adds more to
-/// the estimate than `share`. But where a pixel has many that do, what they add together goes by the square of a
-/// difference, which is as wide as a normal one's is: the variance of the estimate is up to 2/3 of the sum of the
-/// pixels' squared shares, which is squared_error^2 / effective_pixels, and adds to what `share` makes of it.
-double most_expected(double squared_error, double share, double effective_pixels) {
-    if (effective_pixels > 0) share += 2.0 / 3 * squared_error / effective_pixels;
+/// The most that a squared error is which was estimated from terms of which none is above `share`.
+double most_expected(double squared_error, double share) {
     return share > 0 ? share * greatest_expectation(squared_error / share) : squared_error;
+}
+
+/// How much greater a squared error may be than it was estimated, since halves of a pixel with many terms differ as
+/// normal numbers do: the variance of the estimate is up to 2/3 of the sum of the pixels' squared shares in it, which
+/// is its square over `effective_pixels`.
+double doubt_of_halves(double effective_pixels) {
+    return effective_pixels > 0 ? most_expected(1, 2.0 / 3 / effective_pixels) : 1;
 }
 
 /// The estimate is believed, where it cannot be proved, once as many pixels make it: about 64 rare events are known to
@@ -106,8 +109,9 @@ ErrorEstimate estimate_error(const Framebuffer& framebuffer, const std::vector<s
     const double share = greatest_share(greatest_sample, estimate.fewest_samples, variances.size());
     estimate.rmse = std::sqrt(sum / pixel_count);
     if (sum_of_squares > 0) estimate.effective_pixels = sum * sum / sum_of_squares;
-    estimate.most_rmse = std::sqrt(most_expected(sum / pixel_count, share, estimate.effective_pixels));
-    estimate.unseen_rmse = std::sqrt(most_expected(0, share, 0));
+    estimate.most_rmse =
+        std::sqrt(most_expected(doubt_of_halves(estimate.effective_pixels) * sum / pixel_count, share));
+    estimate.unseen_rmse = std::sqrt(most_expected(0, share));
 
     const std::vector<double> around = means_around(variances, framebuffer.width(), framebuffer.height());
     estimate.deviation.resize(around.size());
@@ -129,7 +133,7 @@ TargetStatus AdaptivePlan::status() const {
 bool AdaptivePlan::can_be_proved() const {
     const double squared_target = target_.error * target_.error;
     const double share = greatest_share(target_.greatest_sample, target_.most_samples, counts_.size());
-    return most_expected(kLeastPlanned * squared_target, share, estimate_.effective_pixels) <= squared_target;
+    return most_expected(kLeastPlanned * squared_target, share) <= squared_target;
 }
 
 std::vector<SamplePass> AdaptivePlan::next(const Framebuffer& framebuffer) {
@@ -145,11 +149,12 @@ std::vector<SamplePass> AdaptivePlan::next(const Framebuffer& framebuffer) {
     if (can_be_proved()) {
         // Beside what is planned there must be room for light that no sample has found.
         const double share = greatest_share(target_.greatest_sample, estimate_.fewest_samples, counts_.size());
-        planned = 2 * squared_target - most_expected(squared_target, share, estimate_.effective_pixels);
+        planned = 2 * squared_target - most_expected(squared_target, share);
         if (planned < kLeastPlanned * squared_target) {
             planned = kLeastPlanned * squared_target;
             floor = static_cast<double>(twice_the_fewest);
         }
+        planned /= doubt_of_halves(estimate_.effective_pixels);
     } else if (is_kept) {
         if (estimate_.effective_pixels >= kEnoughPixels) return {};  // more samples would not tell more
         floor = static_cast<double>(twice_the_fewest);

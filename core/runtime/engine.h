@@ -130,7 +130,7 @@ double most_parts(const SceneView<Scalar>& scene, const ImageSettings& settings)
     if (sampling == LightSampling::None) return 1;
     const double parts = std::clamp(settings.depth, 1, kMostSampledHits + 1);
     if (sampling == LightSampling::Light) return std::ldexp(parts, settings.split_depth);
-    const double albedo = scene.max_diffuse_albedo;
+    const double albedo = scene.max_sampled_albedo;
     return settings.roulette || albedo >= 1 ? parts : (1 - std::pow(albedo, parts)) / (1 - albedo);
 }
 

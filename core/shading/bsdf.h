@@ -1,8 +1,8 @@
 /// What a material does with light: a direction is sampled, and what a surface sends toward a given one is evaluated.
 ///
 /// The two agree, as tests hold: the mean of the weights of sampled directions is the integral of bsdf_value(), and
-/// bsdf_density() is the density at which directions of diffuse surfaces are sampled. Mirrors, fuzzy ones too, and
-/// glass have no density: toward a direction that they did not sample they send nothing.
+/// bsdf_density() is the density at which directions of diffuse surfaces and fuzzy mirrors are sampled. Mirrors that
+/// are not fuzzy and glass have no density: toward a direction that they did not sample they send nothing.
 #pragma once
 
 #include <numbers>
@@ -44,7 +44,7 @@ RAYPOOL_INLINE BsdfSample<Real> sample_bsdf(const SurfacePoint<Real>& point,
     }
     const Mask<Real> is_glass = material.is_glass();
     const Mask<Real> is_metal = material.is_metal();
-    const Mask<Real> is_rough = features.fuzz ? is_metal && material.parameter > Real(0) : Mask<Real>(false);
+    const Mask<Real> is_rough = material.is_fuzzy();
     const Mask<Real> is_diffuse = material.is_diffuse();
     Vec3<Real> on_sphere = point.normal;
     if (any(is_diffuse || is_rough)) on_sphere = unit_sphere<Real>(random[0], random[1]);
@@ -81,22 +81,31 @@ RAYPOOL_INLINE BsdfSample<Real> sample_bsdf(const SurfacePoint<Real>& point,
     return out;
 }
 
-/// Of solid angle: of sample_bsdf() at unit `direction`.
+/// Of solid angle: of sample_bsdf() at unit `direction`; `arriving` is that of the ray which arrives.
 template <Features features, class Real>
 RAYPOOL_INLINE Real bsdf_density(const SurfacePoint<Real>& point, const SurfaceMaterial<features, Real>& material,
-                                 const Vec3<Real>& direction) {
+                                 const Vec3<Real>& arriving, const Vec3<Real>& direction) {
     constexpr ScalarOf<Real> kInversePi = std::numbers::inv_pi_v<ScalarOf<Real>>;
     const Real cosine = dot<Real>(direction, point.normal);
-    return select(material.is_diffuse() && cosine > Real(0), cosine * Real(kInversePi), Real(0));
+    Real density = select(material.is_diffuse(), cosine * Real(kInversePi), Real(0));
+    if constexpr (features.fuzz) {
+        const Mask<Real> is_fuzzy = material.is_fuzzy();
+        if (any(is_fuzzy)) {
+            const Vec3<Real> mirrored = mirror_direction<Real>(arriving, point.normal);
+            density = select(is_fuzzy, fuzzy_density<Real>(mirrored, material.parameter, direction), density);
+        }
+    }
+    return select(cosine > Real(0), density, Real(0));
 }
 
 /// The part of the light from unit `direction` that goes back along the ray which arrived: the BSDF times the cosine.
 /// `colour` is the surface's.
 template <Features features, class Real>
 RAYPOOL_INLINE Vec3<Real> bsdf_value(const SurfacePoint<Real>& point, const SurfaceMaterial<features, Real>& material,
-                                     const Vec3<Real>& colour, const Vec3<Real>& direction) {
-    // Diffuse light is sampled as it is reflected, so that the weight of a sample is the colour.
-    const Real density = bsdf_density<features, Real>(point, material, direction);
+                                     const Vec3<Real>& colour, const Vec3<Real>& arriving,
+                                     const Vec3<Real>& direction) {
+    // Light is sampled as it is reflected, so that the weight of a sample is the colour.
+    const Real density = bsdf_density<features, Real>(point, material, arriving, direction);
     return vec3<Real>(colour[0] * density, colour[1] * density, colour[2] * density);
 }
 

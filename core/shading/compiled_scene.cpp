@@ -59,7 +59,7 @@ class Compiler {
         }
         compiled.max_radiance = max_radiance_;
         compiled.max_albedo = max_albedo_;
-        compiled.max_diffuse_albedo = max_diffuse_albedo_;
+        compiled.max_sampled_albedo = max_sampled_albedo_;
         return compiled;
     }
 
@@ -137,8 +137,8 @@ class Compiler {
         set_code(static_cast<int>(texture.kind) + repeat, material.texture_id);
         double& most = is_emitter ? max_radiance_ : max_albedo_;
         most = std::max(most, texture.brightest() * (is_emitter ? material.strength : 1));
-        if (material.kind == Material::Kind::Diffuse)
-            max_diffuse_albedo_ = std::max(max_diffuse_albedo_, texture.brightest());
+        if (material.kind == Material::Kind::Diffuse || (material.kind == Material::Kind::Metal && material.fuzz > 0))
+            max_sampled_albedo_ = std::max(max_sampled_albedo_, texture.brightest());
         return row;
     }
 
@@ -179,7 +179,7 @@ class Compiler {
     Features features_;
     double max_radiance_;
     double max_albedo_ = 0;
-    double max_diffuse_albedo_ = 0;
+    double max_sampled_albedo_ = 0;
     SceneTables<Scalar> out_;
 };
 

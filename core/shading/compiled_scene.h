@@ -139,7 +139,7 @@ struct SceneView : ShapeView<Scalar> {
     EnvironmentView<Scalar> environment;  ///< in place of the sky if it has texels
     double max_radiance = 0;              ///< no path carries more to the image in any channel
     double max_albedo = 0;                ///< no hit leaves a path more of its throughput in any channel
-    double max_diffuse_albedo = 0;        ///< no hit on a diffuse surface does
+    double max_sampled_albedo = 0;        ///< no hit does at which lights may be sampled
 
     std::span<const SurfaceRow<Scalar>> surfaces;
     std::span<const TextureRow<Scalar>> textures;

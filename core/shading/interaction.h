@@ -158,7 +158,12 @@ struct SurfaceMaterial {
     [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_metal() const {
         return features.metal ? is(Material::Kind::Metal) : Mask<Real>(false);
     }
+    [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_fuzzy() const {
+        return features.fuzz ? is_metal() && parameter > Real(0) : Mask<Real>(false);
+    }
     [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_diffuse() const { return !(is_glass() || is_metal() || is_emitter()); }
+    /// Whether it sends some light from any direction onward, so that lights can be sampled.
+    [[nodiscard]] RAYPOOL_INLINE Mask<Real> has_density() const { return is_diffuse() || is_fuzzy(); }
 
   private:
     [[nodiscard]] RAYPOOL_INLINE Mask<Real> is(Material::Kind which) const {

@@ -14,7 +14,7 @@
 
 namespace raypool {
 
-/// Whether lights are sampled: not at all; alone, where a surface is diffuse; or so that what is
+/// Whether lights are sampled: not at all; alone, where a surface is diffuse or a fuzzy mirror; or so that what is
 /// sampled and what is found by chance share the weight (multiple importance sampling by the balance heuristic; Veach
 /// and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995).
 enum class LightSampling : std::uint8_t { None, Light, Mis };

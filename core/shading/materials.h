@@ -7,6 +7,8 @@
 /// Fresnel's equations for unpolarised light exactly.
 #pragma once
 
+#include <numbers>
+
 #include "core/math/sampling.h"
 
 namespace raypool {
@@ -31,6 +33,22 @@ RAYPOOL_INLINE Vec3<Real> fuzzy_direction(const Vec3<Real>& mirrored, const Real
     const Vec3<Real> w = along<Real>(mirrored, fuzz, on_sphere);
     const Mask<Real> is_short = dot<Real>(w, w) < Real(1e-12F);
     return unit<Real>(select<Real>(is_short, mirrored, w));
+}
+
+/// Of solid angle: of fuzzy_direction() at unit `direction`, for fuzz in (0, 1]. The direction passes the sphere around
+/// the end of the mirrored one at two distances, cos +- chord / 2. At each, area has the density 1 / (4 pi fuzz^2), and
+/// solid angle has distance^2 over the cosine to the sphere's normal of area, which is chord / 2 over fuzz.
+template <class Real>
+RAYPOOL_INLINE Real fuzzy_density(const Vec3<Real>& mirrored, const Real& fuzz, const Vec3<Real>& direction) {
+    const Real cosine = dot<Real>(mirrored, direction);
+    const Vec3<Real> across = cross<Real>(mirrored, direction);
+    const Real square = fuzz * fuzz - dot<Real>(across, across);
+    const Real half_chord = sqrt(max(square, Real(1e-20F)));
+    const Real near = max(cosine - half_chord, Real(0));
+    const Real far = max(cosine + half_chord, Real(0));
+    constexpr ScalarOf<Real> kFourPi = 4 * std::numbers::pi_v<ScalarOf<Real>>;
+    const Real density = mad<Real>(near, near, far * far) / (Real(kFourPi) * fuzz * half_chord);
+    return select(square > Real(0), density, Real(0));
 }
 
 /// What happens at a smooth boundary between two media.

@@ -4,8 +4,6 @@
 /// carried on by value: throughput is multiplied down the path in one order, so that engines agree.
 #pragma once
 
-#include <algorithm>
-
 #include "core/math/path.h"
 #include "core/math/random.h"
 #include "core/shading/bsdf.h"
@@ -73,7 +71,7 @@ struct LightPart {
     Vec3<Real> radiance;      ///< what the path brings home if nothing lies before the light
 };
 
-/// Weighs what is found on a light by chance, and samples a light where a surface is diffuse. Weights are shares of
+/// Weighs what is found on a light by chance, and samples a light where a surface has a density. Weights are shares of
 /// what either technique would bring alone: no part of a path brings more than throughput times radiance.
 template <Features features, class Real>
 RAYPOOL_INLINE void share_with_lights(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray, const Real& t,
@@ -91,11 +89,12 @@ RAYPOOL_INLINE void share_with_lights(const SceneView<ScalarOf<Real>>& scene, co
         for (int i = 0; i < 3; ++i)
             out.throughput[i] = select(is_sampled, out.throughput[i] * share, out.throughput[i]);
     }
-    const auto most_hits = static_cast<ScalarOf<Real>>(std::min(lights.depth - 1, kMostSampledHits));
+    const auto most_hits =
+        static_cast<ScalarOf<Real>>(lights.depth - 1 < kMostSampledHits ? lights.depth - 1 : kMostSampledHits);
     lights.has_shadow_ray =
-        material.is_diffuse() && from_uint32<Real>(path_step::bounce<Uint32<Real>>(step)) < Real(most_hits);
-    lights.density =
-        select(lights.has_shadow_ray, bsdf_density<features, Real>(point, material, out.direction), Real(0));
+        material.has_density() && from_uint32<Real>(path_step::bounce<Uint32<Real>>(step)) < Real(most_hits);
+    lights.density = select(lights.has_shadow_ray,
+                            bsdf_density<features, Real>(point, material, ray.direction, out.direction), Real(0));
     if (none(lights.has_shadow_ray)) return;
 
     Real light_row[Row::kColumns];
@@ -114,7 +113,7 @@ RAYPOOL_INLINE void share_with_lights(const SceneView<ScalarOf<Real>>& scene, co
         of_light = around.density;
         radiance = around.radiance;
     }
-    const Real density = bsdf_density<features, Real>(point, material, light.direction);
+    const Real density = bsdf_density<features, Real>(point, material, ray.direction, light.direction);
     lights.has_shadow_ray = lights.has_shadow_ray && density > Real(0) && light.is_seen;
     if (none(lights.has_shadow_ray)) return;
     const Ray<Real> shadow_ray{out.start.origin, light.direction, ray.time};

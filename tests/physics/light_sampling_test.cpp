@@ -100,6 +100,15 @@ constexpr Case kCases[] = {
          s.sphere({-1, 0.7, 0.5}, 0.7, s.mirror(0.9));
          s.sphere({1, 0.6, 0.5}, 0.6, s.glass(1.5));
      }},
+    {"fuzzy_mirrors",
+     [](TestScene& s) {
+         s.quad({-1, 2.5, -1}, {2, 0, 0}, {0, 0, 2}, s.emitter(2));
+         for (int i = 0; i < 3; ++i) {
+             const std::int32_t mirror = s.mirror(0.9);
+             s.materials.back().fuzz = std::array{1.0, 0.5, 0.1}[static_cast<std::size_t>(i)];
+             s.sphere({-1.2 + i, 0.5, 0.5}, 0.5, mirror);
+         }
+     }},
     {"many_of_different_power",
      [](TestScene& s) {
          for (int i = 0; i < 12; ++i)

@@ -145,8 +145,8 @@ TEST(Layouts, KeepEverySumOfEveryPixelInAPlaceOfItsOwn) {
     };
     std::vector<std::ptrdiff_t> expected(sums.size());
     std::iota(expected.begin(), expected.end(), std::ptrdiff_t{0});
-    EXPECT_EQ(places(Interleaved{sums.data(), nullptr}), expected);
-    std::vector<std::ptrdiff_t> planar = places(Planar{sums.data(), nullptr, kPixels});
+    EXPECT_EQ(places(Interleaved{sums.data()}), expected);
+    std::vector<std::ptrdiff_t> planar = places(Planar{sums.data(), kPixels});
     EXPECT_EQ(planar[1] - planar[0], std::ptrdiff_t{kPixels}) << "green is in the next plane";
     EXPECT_EQ(planar[3] - planar[0], 1) << "the next pixel is the neighbour";
     std::sort(planar.begin(), planar.end());
