@@ -39,10 +39,10 @@ struct AdviseCommand {
     bool is_quiet = false;
 };
 
-std::string render_line(const AdviseCommand& command, const Offer& offer, int threads) {
+std::string render_line(const AdviseCommand& command, const Features& scene, const Offer& offer, int threads) {
     return fmt::format("raypool render {}{} --spp {} {} --threads {}", shell_word(command.scene),
                        command.width == 0 ? "" : fmt::format(" --width {}", command.width), offer.spp,
-                       render_flags(offer.pilot.configuration), threads);
+                       render_flags(offer.pilot.configuration, scene), threads);
 }
 
 /// A bias that was found, or else what it is below, light that was not seen included.
@@ -60,8 +60,9 @@ void print_offer(const Offer& offer) {
 }
 
 void print_advice(const Advice& advice, const AdviseCommand& command, int threads) {
+    const std::vector<std::string> features = feature_names(advice.features);
     print("{}: features: {}\n", command.scene,
-          advice.features.empty() ? "nothing" : fmt::format("{}", fmt::join(advice.features, ", ")));
+          features.empty() ? "nothing" : fmt::format("{}", fmt::join(features, ", ")));
     print("tried at {} x {} with {} seeds, {} thread{}, and the best {} at {} x {}\n\n", advice.pilot_width,
           advice.pilot_height, advice.pilot_seeds, threads, threads == 1 ? "" : "s", advice.offers.size(), advice.width,
           advice.height);
@@ -78,7 +79,7 @@ void print_advice(const Advice& advice, const AdviseCommand& command, int thread
     }
     print("predicted: ");
     print_offer(advice.offers.front());
-    print("{}\n", render_line(command, advice.offers.front(), threads));
+    print("{}\n", render_line(command, advice.features, advice.offers.front(), threads));
 }
 
 nlohmann::json bias_json(const Estimate& bias, double unseen) {
@@ -89,7 +90,7 @@ nlohmann::json advice_json(const Advice& advice, const AdviseCommand& command, i
     nlohmann::json offers = nlohmann::json::array();
     for (const Offer& o : advice.offers)
         offers.push_back({{"configuration", to_string(o.pilot.configuration)},
-                          {"command", render_line(command, o, threads)},
+                          {"command", render_line(command, advice.features, o, threads)},
                           {"spp", o.spp},
                           {"seconds", o.seconds},
                           {"seconds_interval", {o.seconds_interval.low, o.seconds_interval.high}},
@@ -107,7 +108,7 @@ nlohmann::json advice_json(const Advice& advice, const AdviseCommand& command, i
     if (command.target_time) target["seconds"] = *command.target_time;
     return {{"scene", command.scene},
             {"target", target},
-            {"features", advice.features},
+            {"features", feature_names(advice.features)},
             {"size", {advice.width, advice.height}},
             {"pilot_size", {advice.pilot_width, advice.pilot_height}},
             {"pilot_seeds", advice.pilot_seeds},

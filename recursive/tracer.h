@@ -183,6 +183,7 @@ class Tracer {
 
     void follow_shadow_ray(const Path& path, const Scattered<Scalar>& out, const LightPart<Scalar>& lights) {
         ++shadow_rays_;
+        if constexpr (requires { work_.begin_shadow_ray(); }) work_.begin_shadow_ray();  // of a log that wants to know
         const Ray<Scalar> ray{out.start.origin, lights.light.direction, path.ray.time};
         const Occlusion<Scalar> light{lights.light.t, static_cast<std::int32_t>(lights.light.primitive_id)};
         if (!is_occluded<features>(scene_, ray, static_cast<std::int32_t>(out.start.leaving_id), light, work_))

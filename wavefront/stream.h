@@ -78,6 +78,7 @@ class StreamWalk {
     using Row = RayRow<S>;
     static constexpr int kRays = kLanes<Real>;
     static constexpr int kWidth = kTreeWidth<S>;
+    static constexpr bool kIsShadow = std::same_as<Hits, ShadowHits<S>>;
     static constexpr bool kCountsLists = requires(Work work) { work.count_list(1, 1, true); };
     static constexpr std::int32_t kLargestId = std::numeric_limits<std::int32_t>::max();
 
@@ -173,16 +174,24 @@ class StreamWalk {
             Hit<Real> hit;
             hit.t = row[Row::kDistance];
             hit.primitive_id = Int<Real>(kLargestId);  // a tie with the hit so far is settled below, where it is rare
+            const auto tell = [&](unsigned bits, const Hit<Real>& found) {
+                for (; bits != 0; bits &= bits - 1) {
+                    const int i = std::countr_zero(bits);
+                    const std::uint32_t ray = list[first + static_cast<std::size_t>(i)] / Row::kColumns;
+                    hits_.keep_closer(ray, lane(found.t, i), static_cast<std::int32_t>(lane(found.primitive_id, i)));
+                }
+            };
             Mask<Real> is_improved(false);
             for_each_shape(block, [&](int i) {
                 work_.count_primitives(static_cast<int>(std::min<std::size_t>(kRays, count - first)));
-                is_improved = is_improved || intersect_lane<features, InBox::Yes, Real>(block, i, rays, hit);
+                if constexpr (kIsShadow) {  // each by itself: what is closest may be the light, before its own distance
+                    Hit<Real> any = hit;
+                    tell(mask_bits(intersect_lane<features, InBox::Yes, Real>(block, i, rays, any)), any);
+                } else {
+                    is_improved = is_improved || intersect_lane<features, InBox::Yes, Real>(block, i, rays, hit);
+                }
             });
-            for (unsigned bits = mask_bits(is_improved); bits != 0; bits &= bits - 1) {
-                const int i = std::countr_zero(bits);
-                const std::uint32_t ray = list[first + static_cast<std::size_t>(i)] / Row::kColumns;
-                hits_.keep_closer(ray, lane(hit.t, i), static_cast<std::int32_t>(lane(hit.primitive_id, i)));
-            }
+            if constexpr (!kIsShadow) tell(mask_bits(is_improved), hit);
         }
     }
 
@@ -194,7 +203,7 @@ class StreamWalk {
         const Ray<S> ray{columns(row, Row::kOrigin), columns(row, Row::kDirection), row[Row::kTime]};
         const SpreadRay<Boxes> spread(ray, inverse_of_scale<S>(columns(row, Row::kScale)),
                                       static_cast<std::int32_t>(bits_of<S>(row[Row::kLeaving])));
-        if constexpr (std::same_as<Hits, ShadowHits<S>>) {
+        if constexpr (kIsShadow) {
             Occlusion<S> light{hits_.distance[i], hits_.primitive_id[i]};
             raypool::detail::walk<features, Boxes>(tree_, spread, light, work_, child);
             if (light.is_hidden) hits_.hide(i);

@@ -35,7 +35,7 @@ class Piloting {
 
     /// `images` receives the images, where it is wanted.
     Pilot run(const Configuration& configuration, std::int64_t spp, std::vector<Values>* images = nullptr) const {
-        const double brightest = scene_.in_double.max_radiance;
+        const double brightest = greatest_sample(scene_.in_double, image_settings(configuration, 0));
         const double greatest_share = brightest * brightest / static_cast<double>(scene_.pixel_count());
         Pilot pilot{configuration, spp, {}, {}, slope(configuration, spp), {}, 0, greatest_share};
         std::vector<Values> made = render(configuration, spp, pilot.seconds);
@@ -139,6 +139,7 @@ Pilot combined(Pilot combination, const Change& change, const Pilot& alone, cons
         combination.unseen_bias = alone.unseen_bias;
     }
     if (change.group == Group::Sampler) combination.slope = alone.slope;
+    if (change.group == Group::Lights) combination.greatest_share = alone.greatest_share;
     const double noise = factor(mean(alone.mse), mean(in_float.mse));
     const double time = factor(median(alone.seconds), median(in_float.seconds));
     for (double& m : combination.mse) m *= noise;
@@ -150,7 +151,8 @@ Pilot combined(Pilot combination, const Change& change, const Pilot& alone, cons
 std::vector<Pilot> combinations(const Pilot& trusted, const std::vector<Change>& all,
                                 const std::vector<Pilot>& pilots) {
     std::vector<Pilot> combinations{trusted, pilots.front()};
-    for (const Group group : {Group::Engine, Group::Sampler, Group::Roulette, Group::Split, Group::Depth}) {
+    for (const Group group :
+         {Group::Engine, Group::Sampler, Group::Roulette, Group::Split, Group::Lights, Group::Depth}) {
         const std::size_t count = combinations.size();
         for (std::size_t i = 0; i < all.size(); ++i)
             for (std::size_t k = 0; all[i].group == group && k < count; ++k)
@@ -159,7 +161,14 @@ std::vector<Pilot> combinations(const Pilot& trusted, const std::vector<Change>&
     return combinations;
 }
 
-/// The few most promising, which may meet the target. Throws InputError where none may.
+/// Whether lights are sampled so well that the time of a closer look finds too little of what is left to chance.
+bool is_hopeless(const Pilot& pilot) {
+    return pilot.configuration.light_sampling != LightSampling::None &&
+           pilot.seconds_of(kSeeds * pilot.known_spp()) > kMostSecondsPerOffer;
+}
+
+/// The few most promising, which may meet the target, and of those that sample no lights at least one: where lights
+/// are sampled little is left to chance, and what may be left is known late. Throws InputError where none may.
 std::vector<Offer> promising(const std::vector<Pilot>& pilots, const Target& target) {
     std::vector<Offer> foretold;
     for (const Pilot& pilot : pilots)
@@ -170,8 +179,15 @@ std::vector<Offer> promising(const std::vector<Pilot>& pilots, const Target& tar
                 ? fmt::format("--target-error: {:g} would take more than {} samples a pixel", *target.error, kMostSpp)
                 : fmt::format("--target-time: {:g} s is too short for one sample a pixel", *target.seconds));
     sort_offers(foretold, target);
-    foretold.resize(std::min(foretold.size(), kOffers));
-    return foretold;
+    if (!std::all_of(foretold.begin(), foretold.end(), [](const Offer& o) { return is_hopeless(o.pilot); }))
+        std::erase_if(foretold, [](const Offer& offer) { return is_hopeless(offer.pilot); });
+    const auto end_of_best = foretold.begin() + static_cast<std::ptrdiff_t>(std::min(foretold.size(), kOffers));
+    const auto by_chance = std::find_if(foretold.begin(), foretold.end(), [](const Offer& offer) {
+        return offer.pilot.configuration.light_sampling == LightSampling::None;
+    });
+    std::vector<Offer> best(foretold.begin(), end_of_best);
+    if (by_chance != foretold.end() && by_chance >= end_of_best) best.push_back(*by_chance);
+    return best;
 }
 
 /// A pilot at the size that is asked for, of a configuration that takes so many seconds a sample there.
@@ -200,7 +216,7 @@ NothingPromised nothing_promised(const std::string& trials, double max_radiance)
 }  // namespace
 
 std::int64_t most_pilots() {
-    return 10 + static_cast<std::int64_t>(changes(true, kTrusted).size() + 8 * kOffers);
+    return 10 + static_cast<std::int64_t>(changes(kEverything, kTrusted).size() + 8 * (kOffers + 1));
 }
 
 Advice advise(const Scene& scene, const Target& target, const AdviseOptions& options) {
@@ -210,7 +226,7 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
     const CompiledScene<double>& compiled = pilot_tables.in_double;
     const Configuration deep = trusted_for(compiled);
     const Features& features = pilot_tables.in_float.features;
-    Advice advice{feature_names(features), scene.width, scene.height, small.width, small.height, kSeeds, {}, {}};
+    Advice advice{features, scene.width, scene.height, small.width, small.height, kSeeds, {}, {}};
 
     // One change at a time.
     std::vector<Values> trusted_images;
@@ -218,7 +234,7 @@ Advice advise(const Scene& scene, const Target& target, const AdviseOptions& opt
     const double sample_count = piloting.sample_count(trusted.spp);
     if (!trusted.is_noise_known())
         throw nothing_promised(fmt::format("{:.3g} trial samples", sample_count), compiled.max_radiance);
-    const std::vector<Change> all = changes(features.dielectric, deep);
+    const std::vector<Change> all = changes(features, deep);
     std::vector<Pilot> pilots;
     for (const Change& change : all) {
         const Pilot& before = change.group == Group::Precision ? trusted : pilots.front();

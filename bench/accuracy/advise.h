@@ -62,7 +62,7 @@ struct Offer {
 };
 
 struct Advice {
-    std::vector<std::string> features;  ///< what the scene needs
+    Features features;  ///< what the scene needs
     std::int64_t width = 0, height = 0;
     std::int64_t pilot_width = 0, pilot_height = 0;
     int pilot_seeds = 0;

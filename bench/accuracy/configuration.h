@@ -30,6 +30,7 @@ struct Configuration {
     bool roulette = false;
     std::int32_t depth = 50;
     int split_depth = 0;
+    LightSampling light_sampling = LightSampling::None;  ///< nothing of it is done where a scene has no lights
 
     bool operator==(const Configuration&) const = default;
 };
@@ -37,10 +38,11 @@ struct Configuration {
 /// The one that references are made with: double, deep, nothing that saves time but the pool.
 inline constexpr Configuration kTrusted{.precision = Precision::Double, .depth = kDeep};
 
-/// What differs from the default: "float pool" or "double recursion, depth 5, split 1".
+/// What differs from the default: "float pool" or "double recursion, depth 5, split 1, mis".
 std::string to_string(const Configuration& configuration);
-/// The flags of `raypool render` that say the same; those that say the command's default too.
-std::string render_flags(const Configuration& configuration);
+/// The flags of `raypool render` that say the same; those that say the command's default too, but for light sampling
+/// where the scene has no lights.
+std::string render_flags(const Configuration& configuration, const Features& scene);
 
 /// A scene in both precisions, which share nothing but the description.
 struct SceneInBoth {
@@ -52,12 +54,21 @@ struct SceneInBoth {
     [[nodiscard]] std::int64_t pixel_count() const { return in_float.pixel_count(); }
 };
 
+/// That of references: the trusted one, but that it samples lights where there are some, by mis. Its expectation is the
+/// same, and small lamps are found.
+Configuration reference_configuration(const SceneInBoth& scene);
+
 struct Taken {
     std::int64_t first_sample = 0;
     std::int64_t end_sample = 1;
     std::uint64_t seed = 0;
     int threads = 1;
 };
+
+/// What the image depends on.
+ImageSettings image_settings(const Configuration& configuration, std::uint64_t seed);
+/// Of a framebuffer for so many samples a pixel.
+FixedPoint fixed_point(const Configuration& configuration, const SceneInBoth& scene, std::int64_t spp);
 
 /// Adds samples to a framebuffer of the scene's size.
 RenderReport render_into(Framebuffer& framebuffer, const Configuration& configuration, const SceneInBoth& scene,
@@ -75,7 +86,7 @@ TimedImage render_image(const Configuration& configuration, const SceneInBoth& s
 Values channel_means(const Framebuffer& framebuffer, std::int64_t sample_count);
 
 /// What a change is a change of. Groups are combined in this order, at most one change of each.
-enum class Group : std::uint8_t { Precision, Engine, Sampler, Roulette, Split, Depth };
+enum class Group : std::uint8_t { Precision, Engine, Sampler, Roulette, Split, Lights, Depth };
 
 /// One simplification: of the trusted configuration where it is of the precision, else of its twin in float.
 struct Change {
@@ -93,7 +104,7 @@ struct Change {
 /// deep as to follow paths in a closed room on and on.
 Configuration trusted_for(const CompiledScene<double>& scene);
 
-/// The first is that to float.
-std::vector<Change> changes(bool has_glass, const Configuration& trusted);
+/// The first is that to float. Of light sampling only mis is one: alone it has no bound that a promise could use.
+std::vector<Change> changes(const Features& scene, const Configuration& trusted);
 
 }  // namespace raypool::accuracy

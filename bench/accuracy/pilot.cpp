@@ -42,6 +42,12 @@ bool Pilot::is_noise_known() const {
     const auto samples = static_cast<double>(spp);
     return most_noise(samples) <= 2 * noise(samples);
 }
+double Pilot::known_spp() const {
+    // x + sqrt(2 c x) + c <= 2 x from x = c (2 + sqrt(3)) on.
+    const double least_found = kLogOdds * (2 + std::sqrt(3.0));
+    const double found_by_one = mean(mse) * static_cast<double>(spp) * static_cast<double>(mse.size()) / greatest_share;
+    return least_found / found_by_one;
+}
 double Pilot::bias_squared() const {
     const double charged = std::sqrt(std::max(0.0, bias.value + 2 * bias.error)) + unseen_bias;
     return charged * charged;

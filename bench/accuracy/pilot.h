@@ -38,6 +38,8 @@ struct Pilot {
 
     /// Whether the pilot found so much light that its noise is known to a factor of two at least.
     [[nodiscard]] bool is_noise_known() const;
+    /// With how many samples a pixel it would be known, if they find as much; infinity where nothing was found.
+    [[nodiscard]] double known_spp() const;
     /// The greatest expectation of the MSE due to chance, over that which was found.
     [[nodiscard]] double most_noise(double samples) const;
     [[nodiscard]] double noise(double samples) const;        ///< MSE due to chance

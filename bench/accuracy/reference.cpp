@@ -13,15 +13,20 @@ namespace raypool::accuracy {
 
 namespace fs = std::filesystem;
 
-Reference::Reference(std::shared_ptr<const SceneInBoth> scene, std::int64_t half_spp, fs::path folder, int threads)
-    : scene_(std::move(scene)), half_spp_(half_spp), folder_(std::move(folder)), threads_(threads) {}
+Reference::Reference(std::shared_ptr<const SceneInBoth> scene, std::int64_t half_spp, fs::path folder, int threads,
+                     const Configuration& configuration)
+    : scene_(std::move(scene)),
+      half_spp_(half_spp),
+      folder_(std::move(folder)),
+      threads_(threads),
+      configuration_(configuration) {}
 
 const std::string& Reference::key() {
     if (key_.empty()) {
-        const std::string first = render_image(kTrusted, *scene_, {0, 1, kReferenceSeeds[0], threads_}).hash;
+        const std::string first = render_image(configuration_, *scene_, {0, 1, kReferenceSeeds[0], threads_}).hash;
         const std::string text =
             fmt::format("{} {} samples {} seeds {:x} {:x} first {}", scene_hash(scene_->description),
-                        to_string(kTrusted), half_spp_, kReferenceSeeds[0], kReferenceSeeds[1], first);
+                        to_string(configuration_), half_spp_, kReferenceSeeds[0], kReferenceSeeds[1], first);
         key_ = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
     }
     return key_;
@@ -34,7 +39,7 @@ fs::path Reference::file(std::size_t half) {
 
 void Reference::open() {
     if (!halves_.empty()) return;
-    const FixedPoint fixed = FixedPoint::make(half_spp_, scene_->in_double.max_radiance);
+    const FixedPoint fixed = fixed_point(configuration_, *scene_, half_spp_);
     for (std::size_t i = 0; i < kReferenceSeeds.size(); ++i)
         halves_.push_back({{{"reference", key()}, {"half", i == 0 ? "a" : "b"}},
                            half_spp_,
@@ -70,7 +75,7 @@ std::int64_t Reference::extend(std::int64_t more) {
     Checkpoint& sums = halves_[half];
     const SampleRange next{sums.sample_count(), std::min(sums.sample_count() + more, half_spp_)};
     if (next.first < next.end) {
-        render_into(sums.framebuffer, kTrusted, *scene_, {next.first, next.end, kReferenceSeeds[half], threads_});
+        render_into(sums.framebuffer, configuration_, *scene_, {next.first, next.end, kReferenceSeeds[half], threads_});
         sums.ranges = with_range(std::move(sums.ranges), next);
         if (!folder_.empty()) write_checkpoint(file(half), sums);
     }

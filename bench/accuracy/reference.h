@@ -1,4 +1,5 @@
-/// The image that others are held against: double, deep, no shortcut, in two halves of independent random numbers.
+/// The image that others are held against: double, deep, no shortcut but those asked for, in two halves of independent
+/// random numbers.
 ///
 /// Made a range of samples at a time and kept in a folder, so that it is made once and an interruption loses no more
 /// than a range. A file is found by a key over the scene, the image size, the settings and the image of the first
@@ -26,7 +27,7 @@ class Reference {
   public:
     /// `half_spp` samples a pixel in each half; an empty folder keeps nothing. `threads` changes no bit.
     Reference(std::shared_ptr<const SceneInBoth> scene, std::int64_t half_spp, std::filesystem::path folder,
-              int threads);
+              int threads, const Configuration& configuration = kTrusted);
 
     /// Renders, at most `more` samples a pixel, what is missing of the half with the fewest; and keeps it. Returns the
     /// samples that are missing of both halves. Throws InputError for a file that cannot be written or is damaged.
@@ -47,6 +48,7 @@ class Reference {
     std::int64_t half_spp_;
     std::filesystem::path folder_;
     int threads_;
+    Configuration configuration_;
     std::string key_;
     std::vector<Checkpoint> halves_;  ///< two, once open
     std::optional<Halves> means_;

@@ -72,6 +72,7 @@ CaseMethods random_cases();
 CaseMethods texture_cases();
 CaseMethods size_cases();
 CaseMethods planar_cases();
+CaseMethods light_cases();
 CaseMethods image_cases();
 
 }  // namespace raypool::stability

@@ -7,6 +7,7 @@
 #include "bench/studies/renders.h"
 #include "bench/studies/replay_ways.h"
 #include "bench/studies/runner.h"
+#include "core/runtime/settings_text.h"
 #include "wavefront/ladder.h"
 
 namespace raypool::studies {
@@ -26,6 +27,14 @@ constexpr LoopWay kLoadWays[] = {
 };
 constexpr const char* kShares = "one of all paths, equal shares";
 
+/// What every row says.
+Cells start_of_row(const StudyScene& scene, const RenderSettings& settings, const std::string& group,
+                   const std::string& way, const char* source) {
+    return {{"scene", scene.name}, {"light_sampling", to_string(settings.light_sampling)},
+            {"group", group},      {"way", way},
+            {"source", source},    {"threads", settings.threads}};
+}
+
 std::vector<Cells> count_rows(const std::string& group, const std::string& way, Render render) {
     const int threads = render.settings.threads;
     const bool is_timed = threads <= core_count();
@@ -37,18 +46,16 @@ std::vector<Cells> count_rows(const std::string& group, const std::string& way, 
     std::vector<Cells> rows;
     for (std::size_t i = 0; i < counted.report.threads.size(); ++i) {
         const ThreadReport& work = counted.report.threads[i];
-        rows.push_back({{"group", group},
-                        {"way", way},
-                        {"source", "counted"},
-                        {"threads", threads},
-                        {"thread", i},
-                        {"segments", work.segments},
-                        {"box_tests", work.box_tests},
-                        {"primitive_tests", work.primitive_tests},
-                        {"tests", work.box_tests + work.primitive_tests},
-                        {"busy_s", is_timed ? Value(timed.report.threads[i].busy_s) : Value()},
-                        {"wait_s", is_timed ? Value(timed.report.threads[i].wait_s) : Value()},
-                        {"hash", counted.hash}});
+        rows.push_back(start_of_row(*render.scene, render.settings, group, way, "counted") +
+                       Cells{{"thread", i},
+                             {"segments", work.segments},
+                             {"shadow_rays", work.shadow_rays},
+                             {"box_tests", work.box_tests},
+                             {"primitive_tests", work.primitive_tests},
+                             {"tests", work.box_tests + work.primitive_tests},
+                             {"busy_s", is_timed ? Value(timed.report.threads[i].busy_s) : Value()},
+                             {"wait_s", is_timed ? Value(timed.report.threads[i].wait_s) : Value()},
+                             {"hash", counted.hash}});
     }
     return rows;
 }
@@ -61,9 +68,10 @@ std::vector<Cells> replay_load(const StudyScene& scene, const RenderSettings& se
     const int threads = settings.threads;
     std::vector<Cells> rows;
     const auto row = [&](const char* group, const char* way, std::size_t thread, const Tally& tally) {
-        return Cells{{"group", group},        {"way", way},       {"source", "replayed"},
-                     {"threads", threads},    {"thread", thread}, {"segments", tally.segments},
-                     {"tests", tally.tests()}};
+        return start_of_row(scene, settings, group, way, "replayed") + Cells{{"thread", thread},
+                                                                             {"segments", tally.segments},
+                                                                             {"shadow_rays", tally.shadow_rays},
+                                                                             {"tests", tally.tests()}};
     };
     for (const LoopWay& way : loops) {
         const ReplayWay loop = loop_way(way);
@@ -76,29 +84,32 @@ std::vector<Cells> replay_load(const StudyScene& scene, const RenderSettings& se
                            Cells{{"box_tests", work[i].box_tests}, {"primitive_tests", work[i].primitive_tests}});
     }
     const ReplayWay shares{kShares, ReplayWay::Kind::Drained, {}, {}, 0, 1};
-    const std::vector<double> segments = prepare(shares, costs, {1, 0}).replay(threads, {}, {}).work;
+    const std::vector<double> segments = prepare(shares, costs, kSegments).replay(threads, {}, {}).work;
+    const std::vector<double> shadow_rays = prepare(shares, costs, kShadowRays).replay(threads, {}, {}).work;
     const std::vector<double> tests = prepare(shares, costs, kTests).replay(threads, {}, {}).work;
     for (std::size_t i = 0; i < segments.size(); ++i)
-        rows.push_back(
-            row("pool", kShares, i, {static_cast<std::int64_t>(segments[i]), static_cast<std::int64_t>(tests[i]), 0}));
+        rows.push_back(row("pool", kShares, i,
+                           {static_cast<std::int64_t>(segments[i]), static_cast<std::int64_t>(tests[i]), 0,
+                            static_cast<std::int64_t>(shadow_rays[i])}));
     return rows;
 }
 
-std::vector<Case> load_cases(const StudyOptions& options) {
-    const auto scene = study_scene(options.scene, choose(options, options.width, {240, 800}));
+void add_cases(std::vector<Case>& cases, const StudyOptions& options, const std::string& scene_name) {
+    const auto scene = study_scene(scene_name, choose(options, options.width, {240, 800}));
     Plan plan = plan_of(options, {4, 8}, {3, 5}, 8);
     RenderSettings settings = plan.settings;
     settings.threads = plan.most_threads;
+    settings.light_sampling = scene->compiled.features.lights ? LightSampling::Mis : LightSampling::None;
     // Counts do not change from run to run; times do.
     const bool is_timed = settings.threads <= core_count();
     const int repeats = is_timed ? plan.repeats : 1;
 
-    std::vector<Case> cases;
     std::vector<LoopWay> replayed;
     const auto add = [&](const std::string& group, const NamedEngine& engine, const LoopWay& way) {
         settings = with_way(settings, way);
         const auto rows = [=, name = std::string(way.name)](const Render& of) { return count_rows(group, name, of); };
-        cases.push_back(case_of(fmt::format("{}, {}", group, way.name), {engine, scene, settings}, repeats, rows));
+        cases.push_back(
+            case_of(fmt::format("{}: {}, {}", scene->name, group, way.name), {engine, scene, settings}, repeats, rows));
     };
     for (const LoopWay& way : kLoadWays) {
         if (is_timed || parse_schedule(way.schedule).kind == LoopSchedule::Kind::Static) {
@@ -113,7 +124,14 @@ std::vector<Case> load_cases(const StudyOptions& options) {
     }
     add("pool", fused_pool(), {"fused, lines, static", "line", "static"});
     add("pool", fused_pool(), {"fused, pixels, static,1", "pixel", "static,1"});
-    cases.push_back({"replayed", "", 1, [=] { return replay_load(*scene, settings, replayed); }});
+    cases.push_back({scene->name + ": replayed", "", 1, [=] { return replay_load(*scene, settings, replayed); }});
+}
+
+/// Where a scene has lights they are sampled (mis): a shadow ray more at each hit on what is diffuse.
+std::vector<Case> load_cases(const StudyOptions& options) {
+    std::vector<Case> cases;
+    add_cases(cases, options, options.scene);
+    if (!options.is_scene_given) add_cases(cases, options, "small_lamp");
     return cases;
 }
 
@@ -125,7 +143,9 @@ Study load_study() {
                 "How evenly does each way of sharing out the image load the threads, counted in rays and in "
                 "work?",
             .columns =
-                {{"group", ColumnType::Text, "recursion or pool"},
+                {{"scene", ColumnType::Text, "what was rendered"},
+                 {"light_sampling", ColumnType::Text, "none, or mis where the scene has lights"},
+                 {"group", ColumnType::Text, "recursion or pool"},
                  {"way", ColumnType::Text, "grain and schedule, or rung of the ladder"},
                  {"source", ColumnType::Text,
                   "counted: by a real run of so many threads; replayed: from the counted costs of paths, where a real "
@@ -133,6 +153,7 @@ Study load_study() {
                  {"threads", ColumnType::Count, "of the loop"},
                  {"thread", ColumnType::Count, "which, from 0"},
                  {"segments", ColumnType::Count, "rays that it traced"},
+                 {"shadow_rays", ColumnType::Count, "rays toward lights that it traced beside these"},
                  {"box_tests", ColumnType::Count, "ray against box"},
                  {"primitive_tests", ColumnType::Count, "ray against primitive"},
                  {"tests", ColumnType::Count, "both: the unit of work"},

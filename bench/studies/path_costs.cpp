@@ -21,10 +21,12 @@ namespace {
 
 constexpr std::int64_t kMostPaths = std::int64_t{1} << 27;
 
-/// Counts tests, and remembers what had been counted when each segment began.
+/// Counts tests and shadow rays, and remembers what had been counted when each segment began.
 struct SegmentLog : TestCount {
     std::vector<Tally> begins;
-    void begin_segment() { begins.push_back({0, box_tests, primitive_tests}); }
+    std::int64_t shadow_rays = 0;
+    void begin_segment() { begins.push_back({0, box_tests, primitive_tests, shadow_rays}); }
+    void begin_shadow_ray() { ++shadow_rays; }
 };
 
 std::uint16_t clipped(std::int64_t count) {
@@ -39,7 +41,7 @@ struct LineLog {
 
 LineLog record_line(const CompiledScene<float>& scene, const RenderSettings& settings, std::int64_t y) {
     recursive::Tracer<kEverything, float, SegmentLog, Splitting::Off> tracer(
-        scene, settings, FixedPoint::make(settings.end_sample, scene.max_radiance));
+        scene, settings, fixed_point(scene, settings, settings.end_sample));
     LineLog line;
     for (std::int64_t x = 0; x < scene.width; ++x) {
         for (std::int64_t s = settings.first_sample; s < settings.end_sample; ++s) {
@@ -52,7 +54,8 @@ LineLog record_line(const CompiledScene<float>& scene, const RenderSettings& set
     log.begin_segment();  // the end of the last one
     for (std::size_t i = 0; i + 1 < log.begins.size(); ++i)
         line.tests.push_back({clipped(log.begins[i + 1].box_tests - log.begins[i].box_tests),
-                              clipped(log.begins[i + 1].primitive_tests - log.begins[i].primitive_tests)});
+                              clipped(log.begins[i + 1].primitive_tests - log.begins[i].primitive_tests),
+                              clipped(log.begins[i + 1].shadow_rays - log.begins[i].shadow_rays)});
     return line;
 }
 
@@ -61,7 +64,7 @@ template <Features features>
 std::vector<double> time_lines(const CompiledScene<float>& scene, const RenderSettings& settings, std::int64_t step) {
     const FlushDenormals flush;
     recursive::Tracer<features, float, NoTestCount, Splitting::Off, recursive::Rules::Plain> tracer(
-        scene, settings, FixedPoint::make(settings.end_sample, scene.max_radiance));
+        scene, settings, fixed_point(scene, settings, settings.end_sample));
     std::vector<double> seconds;
     for (std::int64_t y = 0; y < scene.height; y += step) {
         const double start = processor_seconds();
@@ -113,10 +116,11 @@ CostModel fit(const std::vector<Tally>& lines, const std::vector<double>& second
 Tally PathCosts::tally(std::int64_t first_path, std::int64_t end_path) const {
     const std::uint32_t begin = first[static_cast<std::size_t>(first_path)];
     const std::uint32_t end = first[static_cast<std::size_t>(end_path)];
-    Tally tally{end - begin, 0, 0};
+    Tally tally{.segments = end - begin};
     for (std::uint32_t s = begin; s < end; ++s) {
         tally.box_tests += tests[s].box;
         tally.primitive_tests += tests[s].primitive;
+        tally.shadow_rays += tests[s].shadow_rays;
     }
     return tally;
 }
@@ -133,7 +137,8 @@ std::vector<Tally> PathCosts::items(const Grain& grain) const {
 std::vector<float> PathCosts::segment_costs(const CostModel& model) const {
     std::vector<float> costs;
     costs.reserve(tests.size());
-    for (const SegmentTests& t : tests) costs.push_back(static_cast<float>(model.seconds({1, t.box, t.primitive})));
+    for (const SegmentTests& t : tests)
+        costs.push_back(static_cast<float>(model.seconds({1, t.box, t.primitive, t.shadow_rays})));
     return costs;
 }
 

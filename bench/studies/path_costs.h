@@ -1,8 +1,9 @@
 /// What every segment of every path costs, recorded once, for studies that replay schedules.
 ///
-/// A cost is counted: the boxes and the primitives that one ray is tested against (core/geometry/traverse.h), which is
-/// work of the per-pixel engines exactly, and of the pools, whose streams and packets test otherwise, in proportion. A
-/// model turns tests into seconds of the recursive engine.
+/// A cost is counted: the boxes and the primitives that one ray is tested against (core/geometry/traverse.h), and with
+/// it the shadow ray that starts where it ends, where lights are sampled. This is work of the per-pixel engines
+/// exactly, and of the pools, whose streams and packets test otherwise, in proportion. A model turns tests into seconds
+/// of the recursive engine.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +18,7 @@ namespace raypool::studies {
 struct SegmentTests {
     std::uint16_t box = 0;
     std::uint16_t primitive = 0;
+    std::uint16_t shadow_rays = 0;  ///< whose tests are among those above
 };
 
 /// Of any number of segments.
@@ -24,26 +26,33 @@ struct Tally {
     std::int64_t segments = 0;
     std::int64_t box_tests = 0;
     std::int64_t primitive_tests = 0;
+    std::int64_t shadow_rays = 0;
 
     [[nodiscard]] std::int64_t tests() const { return box_tests + primitive_tests; }
     void add(const Tally& other) {
         segments += other.segments;
         box_tests += other.box_tests;
         primitive_tests += other.primitive_tests;
+        shadow_rays += other.shadow_rays;
     }
 };
 
-/// Seconds of the recursive engine: of a segment (camera ray, shading, sky), and of a test.
+/// Seconds of the recursive engine: of a segment (camera ray, shading, sky), of a test, and of a shadow ray beside its
+/// tests.
 struct CostModel {
     double segment_s = 0;
     double test_s = 1;
+    double shadow_ray_s = 0;
 
     [[nodiscard]] double seconds(const Tally& tally) const {
-        return segment_s * static_cast<double>(tally.segments) + test_s * static_cast<double>(tally.tests());
+        return segment_s * static_cast<double>(tally.segments) + test_s * static_cast<double>(tally.tests()) +
+               shadow_ray_s * static_cast<double>(tally.shadow_rays);
     }
 };
 /// Counts tests, and nothing else: the work units of the tables on balance.
 inline constexpr CostModel kTests{0, 1};
+inline constexpr CostModel kSegments{1, 0};
+inline constexpr CostModel kShadowRays{0, 0, 1};
 
 /// Paths are numbered by pixel, row by row, and within a pixel by sample.
 struct PathCosts {

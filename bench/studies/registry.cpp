@@ -10,7 +10,7 @@ namespace raypool::studies {
 std::vector<Study> all_studies() {
     return {load_study(),  replay_study(),         schedules_study(),   scaling_study(),  ranks_study(),
             pool_study(),  scene_size_study(),     framebuffer_study(), ladder_study(),   features_study(),
-            depth_study(), speed_accuracy_study(), adaptive_study(),    stability_study()};
+            depth_study(), speed_accuracy_study(), light_study(),       adaptive_study(), stability_study()};
 }
 
 Study make_study(const std::string& name) {

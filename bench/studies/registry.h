@@ -13,6 +13,7 @@ Study depth_study();
 Study features_study();
 Study framebuffer_study();
 Study ladder_study();
+Study light_study();
 Study load_study();
 Study pool_study();
 Study ranks_study();

@@ -23,10 +23,11 @@ namespace {
 std::string image_of(const Render& render) {
     const StudyScene& scene = *render.scene;
     const RenderSettings& settings = render.settings;
-    return fmt::format("{} {} x {}, samples {} to {}, depth {}, split {}, seed {}{}{}", scene.name,
+    return fmt::format("{} {} x {}, samples {} to {}, depth {}, split {}, seed {}{}{}{}", scene.name,
                        scene.compiled.width, scene.compiled.height, settings.first_sample, settings.end_sample,
                        settings.depth, settings.split_depth, settings.seed,
-                       settings.sampler == Sampler::Sobol ? ", sobol" : "", settings.roulette ? ", roulette" : "");
+                       settings.sampler == Sampler::Sobol ? ", sobol" : "", settings.roulette ? ", roulette" : "",
+                       settings.light_sampling == LightSampling::None ? "" : ", " + to_string(settings.light_sampling));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Error against time: every configuration on the same scenes with the same seeds, held against a trusted reference.
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -35,7 +36,7 @@ Configuration base_configuration(std::int64_t depth) {
 }
 
 /// The base, what differs from it in one thing, and the combinations that are worth a look.
-std::vector<Configuration> configurations(std::int64_t depth, bool has_glass) {
+std::vector<Configuration> configurations(std::int64_t depth, const Features& scene) {
     const Configuration base = base_configuration(depth);
     std::vector<Configuration> all{base};
     const auto add = [&](auto... changes) {
@@ -50,6 +51,8 @@ std::vector<Configuration> configurations(std::int64_t depth, bool has_glass) {
     const auto roulette = [](Configuration& c) { c.roulette = true; };
     const auto deep = [](Configuration& c) { c.depth = accuracy::kDeep; };
     const auto split = [](Configuration& c) { c.split_depth = 1; };
+    const auto light = [](Configuration& c) { c.light_sampling = LightSampling::Light; };
+    const auto mis = [](Configuration& c) { c.light_sampling = LightSampling::Mis; };
     add(recursion);
     add(in_double);
     add(recursion, in_double);
@@ -59,9 +62,16 @@ std::vector<Configuration> configurations(std::int64_t depth, bool has_glass) {
     add(sobol, roulette);
     add(sobol, roulette, deep);
     add(sobol, roulette, recursion);
-    if (!has_glass) return all;
-    add(split);
-    add(sobol, roulette, split);
+    if (scene.dielectric) {
+        add(split);
+        add(sobol, roulette, split);
+    }
+    if (scene.lights) {
+        add(light);
+        add(mis);
+        add(mis, recursion);
+        add(sobol, roulette, mis);
+    }
     return all;
 }
 
@@ -82,6 +92,7 @@ Cells start_of_row(const char* kind, const accuracy::SceneInBoth& scene, const C
             {"roulette", c.roulette ? "on" : "off"},
             {"depth", c.depth},
             {"split", c.split_depth},
+            {"light_sampling", raypool::to_string(c.light_sampling)},
             {"threads", threads},
             {"width", scene.in_float.width},
             {"spp", spp}};
@@ -122,7 +133,8 @@ std::vector<SharedScene> scenes_of(const StudyOptions& options) {
 }
 
 /// One row for each configuration that makes another image: its expectation against the trusted one, by pairs of images
-/// made from the same random numbers, whose common noise goes away in their difference.
+/// made from the same random numbers, whose common noise goes away in their difference. Lights are sampled in both in
+/// the same way, or most of the noise would stay.
 Case bias_case(const SharedScene& scene, const std::vector<Configuration>& all, const AccuracyPlan& plan) {
     const auto run = [=]() -> std::vector<Cells> {
         const std::int64_t spp = plan.spps.back();
@@ -130,11 +142,15 @@ Case bias_case(const SharedScene& scene, const std::vector<Configuration>& all, 
             const std::uint64_t seed = plan.first_seed + static_cast<std::uint64_t>(pair);
             return render_image(c, *scene, {0, spp, seed, plan.all_threads}).values;
         };
-        std::vector<accuracy::Values> trusted;
-        for (int pair = 0; pair < kBiasPairs; ++pair) trusted.push_back(image(accuracy::kTrusted, pair));
+        std::map<LightSampling, std::vector<accuracy::Values>> trusted_images;
         std::vector<Cells> rows;
         for (const Configuration& c : all) {
             if (c.engine != EngineKind::Pool) continue;  // the engine does not show in the image
+            std::vector<accuracy::Values>& trusted = trusted_images[c.light_sampling];
+            Configuration trusted_way = accuracy::kTrusted;
+            trusted_way.light_sampling = c.light_sampling;
+            for (int pair = static_cast<int>(trusted.size()); pair < kBiasPairs; ++pair)
+                trusted.push_back(image(trusted_way, pair));
             std::vector<accuracy::Values> differences;
             for (int pair = 0; pair < kBiasPairs; ++pair) {
                 differences.push_back(image(c, pair));
@@ -176,17 +192,18 @@ std::vector<Case> accuracy_cases(const StudyOptions& options) {
     std::vector<Case> cases;
     std::vector<std::function<Case(std::uint64_t)>> by_seed;
     for (const SharedScene& scene : scenes_of(options)) {
-        const auto reference = std::make_shared<accuracy::Reference>(scene, plan.half_spp(), folder, plan.all_threads);
+        const auto reference = std::make_shared<accuracy::Reference>(scene, plan.half_spp(), folder, plan.all_threads,
+                                                                     reference_configuration(*scene));
         // In parts, so that an interruption loses little.
         const std::int64_t range = std::max<std::int64_t>(1, plan.half_spp() / 16);
         for (std::int64_t part = 0; part < 2 * ((plan.half_spp() + range - 1) / range); ++part)
             cases.push_back({fmt::format("reference: {}, part {}", scene->description.name, part), "", 1, [=] {
                                  reference->extend(range);
-                                 return std::vector<Cells>{
-                                     start_of_row(kReference, *scene, accuracy::kTrusted, plan.all_threads, range)};
+                                 return std::vector<Cells>{start_of_row(
+                                     kReference, *scene, reference_configuration(*scene), plan.all_threads, range)};
                              }});
 
-        const std::vector<Configuration> all = configurations(options.depth, scene->in_float.features.dielectric);
+        const std::vector<Configuration> all = configurations(options.depth, scene->in_float.features);
         cases.push_back(bias_case(scene, all, plan));
         for (const Configuration& c : all)
             for (const std::int64_t spp : plan.spps)
@@ -217,6 +234,7 @@ Study speed_accuracy_study() {
                     {"roulette", ColumnType::Text, "on: paths that carry little end by chance"},
                     {"depth", ColumnType::Count, "most segments of a path"},
                     {"split", ColumnType::Count, "hits on glass that follow both branches"},
+                    {"light_sampling", ColumnType::Text, "how lights are found: none (by chance), light or mis"},
                     {"threads", ColumnType::Count, "OpenMP threads"},
                     {"width", ColumnType::Count, "image width, pixels"},
                     {"spp", ColumnType::Count, "samples for each pixel"},

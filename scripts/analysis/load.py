@@ -6,7 +6,31 @@ from .summary import Finding, Picture, Summary, Table
 from .verdict import Verdict, judged
 
 
+def rays(row):
+    """Shadow rays are rays too; older runs had none."""
+    return row["segments"] + row.get("shadow_rays", 0)
+
+
+def by_scene(rows):
+    """Rows of each scene; older runs had one, and no name of it."""
+    if "scene" not in rows[0]:
+        return {"": rows}
+    return {scene: where(rows, scene=scene) for scene in distinct(rows, "scene")}
+
+
+def samples_lights(rows):
+    return any(row.get("shadow_rays") for row in rows)
+
+
 def load(run, rows):
+    return load_of_scene(next(iter(by_scene(rows).values())))
+
+
+def load_lights(run, rows):
+    return load_of_scene(next(own for own in by_scene(rows).values() if samples_lights(own)))
+
+
+def load_of_scene(rows):
     rows = where(rows, repeat=0)
     ways = distinct(rows, "group", "way")
     ways.sort(key=lambda way: way[0] != "recursion")
@@ -17,11 +41,11 @@ def load(run, rows):
         own = sorted(where(rows, group=group, way=way), key=lambda row: row["thread"])
         tests = [row["tests"] for row in own]
         mean = sum(tests) / len(tests) or 1
-        mean_rays = sum(row["segments"] for row in own) / len(own) or 1
+        mean_rays = sum(rays(row) for row in own) / len(own) or 1
         threads = [row["thread"] for row in own]
         axis.bar(threads, [t / mean for t in tests], width=0.85, color=COLOURS[4] if group == "recursion" else COLOURS[1],
                  edgecolor="black" if len(own) <= 32 else "none", linewidth=0.5)
-        axis.plot(threads, [row["segments"] / mean_rays for row in own], marker="o", color="black", markerfacecolor="white",
+        axis.plot(threads, [rays(row) / mean_rays for row in own], marker="o", color="black", markerfacecolor="white",
                   markersize=4 if len(own) <= 32 else 1.5, linestyle="none")
         axis.axhline(1, color="black", linewidth=0.9)
         name = f"pool: {way}" if group == "pool" else way
@@ -46,17 +70,22 @@ def first_run(rows, way):
 
 
 def load_of(rows, way, unit):
-    return max_over_mean(numbers(first_run(rows, way), unit))
+    return max_over_mean(in_units(first_run(rows, way), unit))
 
 
-def loads(rows, threads):
-    table = Table(f"Load of {threads} threads",
+def in_units(rows, unit):
+    return [rays(row) for row in rows] if unit == "rays" else numbers(rows, unit)
+
+
+def loads(scene, rows, threads):
+    table = Table(f"{scene}, lights sampled: load of {threads} threads" if samples_lights(rows) else
+                  f"Load of {threads} threads",
                   ["way", "source", "tests: max/mean", "tests: CV", "rays: max/mean", "rays: CV", "busy: max/mean"])
     for group in ("recursion", "pool"):
         for way in distinct(where(rows, group=group), "way"):
             run = first_run(rows, way)
             busy = numbers(run, "busy_s")
-            cells = [f"{figure(numbers(run, unit)):.3f}" for unit in ("tests", "segments")
+            cells = [f"{figure(in_units(run, unit)):.3f}" for unit in ("tests", "rays")
                      for figure in (max_over_mean, coefficient_of_variation)]
             table.rows.append([way, run[0]["source"], *cells, f"{max_over_mean(busy):.3f}" if busy else ""])
     return table
@@ -75,22 +104,42 @@ def findings(rows, threads):
         threads, "the default schedule of lines is the worst balanced, static,1 better, pixel by pixel the best",
         f"max/mean of tests {basic:.3f}, {static1:.3f} and {collapse:.3f}, {threads} threads",
         basic > static1 > collapse, source="Figure 5", paper="histograms of 8 threads, width 800")
-    rays, tests = (load_of(rows, "one of all paths, equal shares", unit) for unit in ("segments", "tests"))
+    rays, tests = (load_of(rows, "one of all paths, equal shares", unit) for unit in ("rays", "tests"))
     yield shared_out(
         threads, "a pool that shares out its rays evenly shares out its work evenly",
         f"equal shares of every round: max/mean of rays {rays:.3f}, of tests {tests:.3f}, {threads} threads",
         tests <= 1.02)
 
 
+def same_with_lights(scene, rows, threads):
+    """What sampling lights does to the paper's ways."""
+    ways = ("lines, static (default)", "pixels, static,1 (collapse)")
+    default, collapse = (load_of(rows, way, "tests") for way in ways)
+    part = sum(row["shadow_rays"] for row in rows) / sum(rays(row) for row in rows)
+    return shared_out(
+        threads, f"where lights are sampled ({scene}, mis) pixel by pixel is better balanced than the default, too",
+        f"max/mean of tests {collapse:.3f} and {default:.3f}; {100 * part:.0f} % of the rays are shadow rays",
+        collapse < default)
+
+
 def summarise(run, rows):
     threads = rows[0]["threads"]
-    summary = Summary(tables=[loads(rows, threads)], findings=list(findings(rows, threads)))
+    scenes = by_scene(rows)
+    summary = Summary(tables=[loads(scene, own, threads) for scene, own in scenes.items()],
+                      findings=list(findings(next(iter(scenes.values())), threads)))
+    with_lights = {scene: own for scene, own in scenes.items() if samples_lights(own)}
+    summary.findings += [same_with_lights(scene, own, threads) for scene, own in with_lights.items()]
     summary.pictures.append(Picture(
         "load", f"Work of each of {threads} threads",
         "Each bar is a thread's box and primitive tests, each white dot the rays that it traced, both over the mean "
         "(the line at 1). The number is max/mean of tests: 1 is perfect balance, and all threads wait for the tallest "
         "bar. What to see: which ways leave tall bars; and, in the last panel, that a pool whose dots are on the line "
         "may have its bars far from it: equal rays are not equal work."))
+    if with_lights and len(scenes) > 1:
+        summary.pictures.append(Picture(
+            "load_lights", f"The same where lights are sampled: {next(iter(with_lights))}",
+            "Shadow rays count as rays, and their tests as tests: a hit on what is diffuse has one more ray to trace, one "
+            "on mirrors and glass has not. What to see: whether the ways that are uneven above are so here."))
     summary.notes = [
         "Static schedules, and every pool, are counted in a real run. Loops that hand out work as threads ask for it "
         "are counted too where there are enough cores, and replayed from the recorded costs of all paths where there "
@@ -101,4 +150,4 @@ def summarise(run, rows):
     return summary
 
 
-PICTURES = {"load": load}
+PICTURES = {"load": load, "load_lights": load_lights}

@@ -134,7 +134,9 @@ def questions(base):
         ("Sobol points reach the error of independent ones in less time", base.replace("pool", "pool, Sobol"), base),
         ("Russian roulette reaches the error of whole paths in less time", base.replace("pool", "pool, roulette"), base),
         ("a depth of 5 reaches less error in the time of the whole depth", shallow, base),
-        ("to follow both branches of the first hit on glass reaches an error in less time", f"{base}, split 1", base)]
+        ("to follow both branches of the first hit on glass reaches an error in less time", f"{base}, split 1", base),
+        ("lights sampled beside chance (mis) reach an error in less time than chance alone", f"{base}, mis", base),
+        ("mis reaches an error in less time than lights sampled alone", f"{base}, mis", f"{base}, light")]
 
 
 def overview(scene, base):

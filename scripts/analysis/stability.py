@@ -10,11 +10,13 @@ from .verdict import judged
 LINES = {"naive": "--", "ours": "-", "other": ":"}
 PALETTE = {"naive": [COLOURS[3], COLOURS[1], COLOURS[5]], "ours": [COLOURS[0], COLOURS[6], COLOURS[2]],
            "other": [COLOURS[4], COLOURS[2]]}
-ROWS = {"spheres": "1", "leaving": "2", "boxes": "3", "scattering": "4", "paths": "56", "others": "78+"}
+ROWS = {"spheres": "1", "leaving": "2", "boxes": "3", "scattering": "4", "paths": "56", "others": "78+",
+        "lights": "L"}
 
 
 def belongs(row, rows):
-    first = "8" if row["row"].startswith("10") else row["row"][0]  # large images go with the checkers
+    row = row["row"]
+    first = {"10": "8", "11": "L"}.get(row[:2], row[0])  # large images go with the checkers
     return first in rows
 
 
@@ -121,6 +123,9 @@ CURVES = {
     "scattering": ("Directions and glass", "What to see: not-a-numbers where arithmetic meets its edge."),
     "paths": ("Long paths and sums", "What to see: sums in float stop growing, and depend on their order."),
     "others": ("Seeds, checkers, sizes, flat shapes", "What to see: ours holds far out, and where it ends."),
+    "lights": ("Lights and the shadow rays toward them",
+               "What to see: a shadow ray that stops at a part of the way lets light through, one that does not meets the "
+               "lamp; and 1 - cos has nothing left of a light that is far."),
 }
 HOW = (" Dashed: naive; solid: ours; dotted: others. The grey line is the tolerance, the shaded part lies beyond what is "
        "asked of ours. An error of 0 lies on the lower edge.")
@@ -198,7 +203,8 @@ def summarise(run, rows):
     summary = Summary(tables=[verdict_table(curves, methods, run["facts"]), cost_table(costs)])
     summary.findings = [*method_findings(methods), *(image_finding(ruined, name) for name in distinct(ruined, "id"))]
     summary.pictures = [Picture(name, *FAILURES[name]) for name in distinct(ruined, "id")]
-    summary.pictures += [Picture(name, title, what + HOW) for name, (title, what) in CURVES.items()]
+    summary.pictures += [Picture(name, title, what + HOW) for name, (title, what) in CURVES.items()
+                         if any(belongs(row, ROWS[name]) for row in curves)]
     summary.notes = [
         "Errors come from fixed seeds and are the same in every run on one machine. Costs are timed in a register of "
         "rays (spheres, checkers), one by one (boxes, glass), or a term or number at a time, all in the first-level "

@@ -2,6 +2,7 @@
 /// depends on the machine.
 #include "bench/accuracy/advise.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -98,6 +99,23 @@ TEST(Advise, TriesSplittingOnlyWhereThereIsGlass) {
     };
     EXPECT_TRUE(tries_splitting("glass_stack"));
     EXPECT_FALSE(tries_splitting("one_sphere"));
+}
+
+TEST(Advise, TriesLightSamplingOnlyWhereThereAreLights) {
+    const auto advice = [](const char* scene) { return advise(small_scene(scene, 16), {0.3, {}}, counted()); };
+    const auto tries = [](const Advice& given) {
+        return std::any_of(given.simplifications.begin(), given.simplifications.end(),
+                           [](const Simplification& s) { return s.text.starts_with("lights sampled"); });
+    };
+    const Advice with = advice("cornell");
+    const Advice without = advice("one_sphere");
+    EXPECT_TRUE(tries(with));
+    EXPECT_FALSE(tries(without));
+    const auto flags = [](const Advice& given) {
+        return render_flags(given.offers.front().pilot.configuration, given.features);
+    };
+    EXPECT_NE(flags(with).find("--light-sampling"), std::string::npos) << "the command's default is another";
+    EXPECT_EQ(flags(without).find("--light-sampling"), std::string::npos);
 }
 
 /// A closed grey room whose ceiling lamp has edges of `edge` times the room's, and always the same power.

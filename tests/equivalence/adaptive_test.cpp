@@ -39,7 +39,7 @@ struct AdaptiveCase {
 class AdaptiveImage : public testing::TestWithParam<AdaptiveCase> {};
 
 TEST_P(AdaptiveImage, IsTheSameForEveryEngineThreadCountAndPool) {
-    const CompiledScene<float> scene = compile<float>(small_scene(GetParam().scene, 16));
+    const CompiledScene<float> scene = compile<float>(small_scene(GetParam().scene, 28));
     RenderSettings settings;
     settings.end_sample = 80;
     const double error = GetParam().error;

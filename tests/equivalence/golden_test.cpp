@@ -10,6 +10,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -37,8 +38,8 @@ Rendered golden_render(const std::string& scene_name) {
     RenderSettings settings;
     settings.end_sample = 8;
     settings.depth = 50;
-    const bool samples_lights = scene_name == "small_lamp" || scene_name == "caustic";  // which are there for it
-    settings.light_sampling = samples_lights ? LightSampling::Mis : LightSampling::None;
+    static const std::set<std::string> kForLightSampling{"caustic", "many_lights", "sky_image", "small_lamp"};
+    settings.light_sampling = kForLightSampling.contains(scene_name) ? LightSampling::Mis : LightSampling::None;
     return render(recursive::RecursiveEngine(), scene, settings);
 }
 
@@ -75,7 +76,7 @@ TEST_P(Golden, ImageIsTheCommittedOne) {
 
 std::vector<std::string> all_scenes() {
     std::vector<std::string> names = builtin_scene_names();
-    names.emplace_back("textures");
+    names.insert(names.end(), {"sky_image", "textures"});
     return names;
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(all_scenes()), [](const auto& test) { return test.param; });

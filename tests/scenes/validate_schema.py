@@ -44,8 +44,8 @@ def patched(document, patch):
 
 
 def check_generators():
-    for script, output in (("make_paper.py", "paper.json"), ("textures/make_map.py", "textures/map.png"),
-                           ("textures/make_sky.py", "textures/sky.exr")):
+    for script, output in (("make_paper.py", "paper.json"), ("make_many_lights.py", "many_lights.json"),
+                           ("textures/make_map.py", "textures/map.png"), ("textures/make_sky.py", "textures/sky.exr")):
         made = subprocess.run([sys.executable, SCENES / script], check=True, capture_output=True).stdout
         check(made == (SCENES / output).read_bytes(), f"scenes/{script} does not reproduce scenes/{output}")
 

@@ -31,6 +31,21 @@ TEST(PathCosts, AddUpToWhatTheEngineCounts) {
     EXPECT_EQ(all.primitive_tests, report.total(&ThreadReport::primitive_tests));
 }
 
+TEST(PathCosts, HaveTheShadowRaysWhereLightsAreSampled) {
+    const auto scene = study_scene("small_lamp", 32);
+    RenderSettings settings = three_samples();
+    settings.light_sampling = LightSampling::Mis;
+    const PathCosts costs = record_costs(*scene, settings);
+    settings.count_work = true;
+    const RenderReport report = measure(*recursive_engine().engine, *scene, settings).report;
+
+    const Tally all = costs.tally(0, report.paths());
+    EXPECT_GT(all.shadow_rays, 0);
+    EXPECT_EQ(all.shadow_rays, report.total(&ThreadReport::shadow_rays));
+    EXPECT_EQ(all.tests(), report.total(&ThreadReport::box_tests) + report.total(&ThreadReport::primitive_tests));
+    EXPECT_EQ(kShadowRays.seconds(all), static_cast<double>(all.shadow_rays));
+}
+
 TEST(PathCosts, OfTheItemsOfAnyGrainAreAllThereIs) {
     const PathCosts costs = record_costs(*study_scene("paper", 37), three_samples());
     for (const Grain& grain :

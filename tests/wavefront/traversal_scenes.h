@@ -1,6 +1,8 @@
 /// Scenes that make walks through trees go wrong, if anything does: none and one shape, twins, all kinds, motion.
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "core/scene/scene.h"
 #include "tests/random_inputs.h"
 

@@ -88,8 +88,8 @@ TEST(SceneReader, BuiltinScenesAreTheFilesOfTheSourceTree) {
     }
     std::sort(expected.begin(), expected.end());
     EXPECT_EQ(builtin_scene_names(), expected);
-    for (const char* name : {"caustic", "cornell", "furnace", "glass_stack", "half_sky", "mirror_corridor",
-                             "one_sphere", "paper", "small_lamp"}) {
+    for (const char* name : {"caustic", "cornell", "furnace", "glass_stack", "half_sky", "many_lights",
+                             "mirror_corridor", "one_sphere", "paper", "small_lamp"}) {
         EXPECT_TRUE(std::count(expected.begin(), expected.end(), name)) << name;
     }
 
@@ -106,7 +106,7 @@ TEST(SceneReader, BuiltinScenesAreTheFilesOfTheSourceTree) {
 TEST(SceneReader, AnUnknownNameListsTheBuiltinScenes) {
     EXPECT_EQ(refusal([] { load_scene("no_such"); }),
               "no_such: no such file, and no built-in scene of that name (there are caustic, cornell, furnace, "
-              "glass_stack, half_sky, mirror_corridor, one_sphere, paper, small_lamp)");
+              "glass_stack, half_sky, many_lights, mirror_corridor, one_sphere, paper, small_lamp)");
     EXPECT_NE(refusal([] { load_scene(""); }), "");
     EXPECT_NE(refusal([] { load_scene(std::string(100'000, 'x')); }), "");
     EXPECT_EQ(load_scene("furnace").name, "furnace");
