@@ -16,6 +16,7 @@
 #include "wavefront/material_sort.h"
 #include "wavefront/record_stages.h"
 #include "wavefront/shadow_stage.h"
+#include "wavefront/stage_sizes.h"
 
 namespace raypool::wavefront {
 
@@ -35,24 +36,14 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
 
     /// For batches of at most `most_records`.
     Stages(const RenderContext<Scalar>& context, std::size_t most_records, int thread)
-        : Base(context, most_overflow(context, most_records), thread),
-          context_(context),
-          thread_(thread),
-          lists_(most_list(context, most_records), tree_depth(context.scene)),
-          intersect_(context.scene, context.pool.intersection, most_records, lists_),
-          shadow_(context.scene, context.pool.intersection, most_shadow_rays(context, most_records), lists_),
-          sort_(context.pool.sort, most_records),
-          converter_(context.fixed) {
-        contributions_.reserve(most_contributions(context, most_records));
-    }
+        : Stages(context, most_records, sizes(context, most_records), thread) {}
 
     /// The memory of one of these.
     static std::size_t bytes(const RenderContext<Scalar>& context, std::size_t most_records) {
-        return StreamLists<Scalar>::bytes(most_list(context, most_records), tree_depth(context.scene)) +
-               RayStream<Scalar>::bytes(most_records) + Records::bytes(most_overflow(context, most_records)) +
-               MaterialSort<Scalar>::bytes(context.pool.sort, most_records) +
-               Contributions<Scalar>::bytes(most_contributions(context, most_records)) +
-               Shadow::bytes(most_shadow_rays(context, most_records));
+        const StageSizes size = sizes(context, most_records);
+        return StreamLists<Scalar>::bytes(size.list, size.tree_depth) + RayStream<Scalar>::bytes(most_records) +
+               Records::bytes(size.overflow) + MaterialSort<Scalar>::bytes(context.pool.sort, most_records) +
+               Contributions<Scalar>::bytes(size.contributions) + Shadow::bytes(size.shadow_rays);
     }
 
     void begin() override {
@@ -161,24 +152,19 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
     }
 
   private:
-    /// Kept back in the fused camera stage; they fit into the first-level cache.
-    static constexpr std::size_t kMostContributions = 1024;
-
-    static std::size_t most_shadow_rays(const RenderContext<Scalar>& context, std::size_t most_records) {
-        const bool has_some = needed_features(context.scene.features, context.settings).lights;
-        return features.lights && has_some ? std::min(most_records + kRays, RayStream<Scalar>::kMostRays) : 0;
+    Stages(const RenderContext<Scalar>& context, std::size_t most_records, const StageSizes& size, int thread)
+        : Base(context, size.overflow, thread),
+          context_(context),
+          thread_(thread),
+          lists_(size.list, size.tree_depth),
+          intersect_(context.scene, context.pool.intersection, most_records, lists_),
+          shadow_(context.scene, context.pool.intersection, size.shadow_rays, lists_),
+          sort_(context.pool.sort, most_records),
+          converter_(context.fixed) {
+        contributions_.reserve(size.contributions);
     }
-    static std::size_t most_list(const RenderContext<Scalar>& context, std::size_t most_records) {
-        return std::max(most_records, most_shadow_rays(context, most_records));
-    }
-    static int tree_depth(const SceneView<Scalar>& scene) {
-        return std::max(scene.sphere_tree.depth, scene.quad_tree.depth);
-    }
-    static std::size_t most_contributions(const RenderContext<Scalar>& context, std::size_t most_records) {
-        return std::max(most_records, kMostContributions) + kBeamRays + kRays + most_shadow_rays(context, most_records);
-    }
-    static std::size_t most_overflow(const RenderContext<Scalar>& context, std::size_t most_records) {
-        return context.settings.split_depth > 0 ? most_records : 0;
+    static StageSizes sizes(const RenderContext<Scalar>& context, std::size_t most_records) {
+        return stage_sizes<features, Real>(context, most_records);
     }
 
     /// Takes the next camera rays, of one register or of a beam, through their first bounce. Returns the survivors.
@@ -212,7 +198,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         std::size_t written = 0;
         for (int p = 0; p < packets; ++p)
             written += shade(records, target + written, end, record[p], hit[p], active[p]);
-        if (contributions_.count() > kMostContributions) accumulate();
+        if (contributions_.count() > StageSizes::kKeptContributions) accumulate();
         return written;
     }
 
@@ -222,11 +208,9 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         const Mask<Real> is_hit = as_mask<Real>(hit.primitive_id >= Int<Real>(0));
         const unsigned hits = mask_bits(is_hit) & active;
         if (const unsigned misses = active & ~hits; misses != 0) {
-            Real density(0);
-            if constexpr (features.lights) density = record.density;
             const Vec3<Real> radiance = escaping_radiance<features, Real>(
                 context_.scene, record.ray.direction, record.throughput,
-                needed_light_sampling(context_.scene.features, context_.settings), density);
+                needed_light_sampling(context_.scene.features, context_.settings), record.density);
             contributions_.template put<Real>(cell_of(record.key), radiance, misses);
         }
         if (hits == 0) return 0;

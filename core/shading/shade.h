@@ -71,6 +71,15 @@ struct LightPart {
     Vec3<Real> radiance;      ///< what the path brings home if nothing lies before the light
 };
 
+/// sample_light() by a call: a recursion has its frame at every depth, and needs none of the temporaries there.
+template <Features features, class Real>
+[[gnu::noinline]] RAYPOOL_HOST_DEVICE LightSample<Real> call_sample_light(const SceneView<ScalarOf<Real>>& scene,
+                                                                          const RayStart<Real>& start, const Real& time,
+                                                                          const std::array<Real, 4>& random,
+                                                                          Real* row) {
+    return sample_light<features, Real>(scene, start, time, random, row);
+}
+
 /// Weighs what is found on a light by chance, and samples a light where a surface has a density. Weights are shares of
 /// what either technique would bring alone: no part of a path brings more than throughput times radiance.
 template <Features features, class Real>
@@ -99,7 +108,11 @@ RAYPOOL_INLINE void share_with_lights(const SceneView<ScalarOf<Real>>& scene, co
 
     Real light_row[Row::kColumns];
     const std::array<Real, 4> random = random_block<Real>(key, step, RandomPurpose::Light, seed);
-    lights.light = sample_light<features, Real>(scene, out.start, ray.time, random, light_row);
+    if constexpr (Simd<Real>) {
+        lights.light = sample_light<features, Real>(scene, out.start, ray.time, random, light_row);
+    } else {
+        lights.light = call_sample_light<features, Real>(scene, out.start, ray.time, random, light_row);
+    }
     LightSample<Real>& light = lights.light;
     const Mask<Real> is_around = light.template is_environment<features>();
     Real of_light(0);

@@ -80,7 +80,7 @@ TEST_P(AdaptiveImage, IsTheSameForEveryEngineThreadCountAndPool) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, AdaptiveImage,
                          testing::Values(AdaptiveCase{"half_sky", 0.02}, AdaptiveCase{"paper", 0.04},
-                                         AdaptiveCase{"cornell", 0.15}, AdaptiveCase{"glass_stack", 0.03}),
+                                         AdaptiveCase{"cornell", 0.2}, AdaptiveCase{"glass_stack", 0.03}),
                          [](const auto& param) { return std::string(param.param.scene); });
 
 TEST(AdaptiveRender, ThatIsStoppedTellsTheErrorOfWhatItHas) {
