@@ -141,7 +141,7 @@ RAYPOOL_INLINE ScalarOf<Real> greatest_lane(const Real& v) {
 }
 
 /// compress_store() of many registers of Real's lanes with the same bits: LanePacker(bits), then store(target,
-/// register).
+/// register); or pack(register), which returns the register that would be stored: its first lanes are those of `bits`.
 template <class Real>
 using LanePacker = detail::LanePacker<Real>;
 

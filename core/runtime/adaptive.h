@@ -3,9 +3,9 @@
 /// A render goes in passes. Before each, the variance of every pixel is estimated from the framebuffer's sums of two
 /// halves of its samples, and the pixels that have too few samples get more. Halves tell less than each sample's square
 /// would, one degree of freedom a pixel, but what is asked is about many pixels, and a sample may come in any number of
-/// parts (light sampling, splitting). Of all ways to reach an error, samples in proportion
-/// to each pixel's standard deviation are the fewest (Neyman, "On the Two Different Aspects of the Representative
-/// Method", 1934); samples that bring every pixel to the same error would be no fewer than everywhere the same number.
+/// parts (light sampling, splitting). Of all ways to reach an error, samples in proportion to each pixel's standard
+/// deviation are the fewest (Neyman, "On the Two Different Aspects of the Representative Method", 1934); samples that
+/// bring every pixel to the same error would be no fewer than everywhere the same number.
 ///
 /// Error is the root of the mean over pixels and channels of the squared standard error: the RMSE that is expected
 /// against the converged image. All estimates come from exact integers and from arithmetic that every machine rounds

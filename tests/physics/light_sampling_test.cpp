@@ -7,22 +7,10 @@
 
 #include <Eigen/Geometry>
 
-#include "tests/physics/agreement.h"
-#include "tests/physics/test_scene.h"
+#include "tests/physics/light_renders.h"
 
 namespace raypool {
 namespace {
-
-template <class Scalar>
-Rendered render_with(const Scene& scene, LightSampling sampling, std::int64_t spp, std::uint64_t seed = 0,
-                     std::int32_t depth = 20) {
-    RenderSettings settings;
-    settings.end_sample = spp;
-    settings.depth = depth;
-    settings.seed = seed;
-    settings.light_sampling = sampling;
-    return render(recursive::IterativeEngine(), compile<Scalar>(scene), settings);
-}
 
 struct Estimate {
     double mean, error;
@@ -124,17 +112,10 @@ class LightSamplingCase : public testing::TestWithParam<Case> {
     static void expect_equal_means() {
         TestScene scene = corner();
         GetParam().add(scene);
-        const Estimate chance = estimate(render_with<Scalar>(scene, LightSampling::None, 400));
+        const Rendered by_chance = render_with<Scalar>(scene, LightSampling::None, 400);
         for (const LightSampling sampling : {LightSampling::Mis, LightSampling::Light}) {
             const Rendered rendered = render_with<Scalar>(scene, sampling, 100, 1);
-            const Estimate found = estimate(rendered);
-            // Both errors are of images with the same structure, which is no noise: compare pixel by pixel.
-            std::vector<double> differences;
-            const std::vector<double> a = pixel_values(render_with<Scalar>(scene, LightSampling::None, 400));
-            const std::vector<double> b = pixel_values(rendered);
-            for (std::size_t i = 0; i < a.size(); ++i) differences.push_back(b[i] - a[i]);
-            EXPECT_TRUE(mean_agrees(differences, 0))
-                << chance.mean << " by chance, " << found.mean << " by light sampling";
+            EXPECT_TRUE(same_means(by_chance, rendered));
             EXPECT_TRUE(sampling == LightSampling::Light || rendered.report.statistics.clamped == 0);
             EXPECT_EQ(rendered.report.statistics.non_finite, 0);
         }
@@ -192,11 +173,7 @@ TEST(LightSampling, LeavesTheHitsBehindTheLastThatItSamplesToChance) {
     constexpr std::int32_t kDepth = 5000;
     const Rendered by_chance = render_with<float>(scene, LightSampling::None, 64, 0, kDepth);
     EXPECT_GT(by_chance.report.segments(), 150 * by_chance.report.paths());
-    const std::vector<double> a = pixel_values(by_chance);
-    const std::vector<double> b = pixel_values(render_with<float>(scene, LightSampling::Mis, 64, 1, kDepth));
-    std::vector<double> differences;
-    for (std::size_t i = 0; i < a.size(); ++i) differences.push_back(b[i] - a[i]);
-    EXPECT_TRUE(mean_agrees(differences, 0));
+    EXPECT_TRUE(same_means(by_chance, render_with<float>(scene, LightSampling::Mis, 64, 1, kDepth)));
 
     // So the step of the sums is that of so many parts, however deep paths may go.
     const CompiledScene<float> compiled = compile<float>(scene);

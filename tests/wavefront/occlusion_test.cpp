@@ -52,7 +52,6 @@ template <class Real>
 std::vector<bool> hidden_in_stream(const CompiledScene<ScalarOf<Real>>& scene,
                                    const std::vector<ShadowRay<ScalarOf<Real>>>& rays, Intersection intersection) {
     using Scalar = ScalarOf<Real>;
-    using Row = RayRow<Scalar>;
     NoTestCount work;
     RayStream<Scalar> stream(rays.size());
     const StreamLists<Scalar> lists(rays.size(), tree_depth(scene));
@@ -72,14 +71,7 @@ std::vector<bool> hidden_in_stream(const CompiledScene<ScalarOf<Real>>& scene,
                                 mask_bits(hidden_by_any<kEverything>(scene.planes, wide, lanes, light, work));
         for (int i = 0; i < lanes; ++i) {
             const std::size_t at = first + static_cast<std::size_t>(i);
-            Row& row = stream.rows()[at];
-            for (int k = 0; k < 3; ++k) {
-                row.value[Row::kOrigin + k] = starts[at].ray.origin[k];
-                row.value[Row::kScale + k] = 1 / starts[at].ray.direction[k];
-                row.value[Row::kDirection + k] = starts[at].ray.direction[k];
-            }
-            row.value[Row::kLeaving] = of_bits<Scalar>(starts[at].leaving_id);
-            row.value[Row::kTime] = starts[at].ray.time;
+            set_row(stream.rows()[at], starts[at]);
             hits.set(static_cast<std::uint32_t>(at), rays[at].light.t, rays[at].light.light_id);
             if ((hidden >> i & 1U) != 0) hits.hide(static_cast<std::uint32_t>(at));
         }

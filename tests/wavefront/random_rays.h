@@ -82,6 +82,19 @@ WideRays<Real> gather(const std::vector<StartedRay<ScalarOf<Real>>>& rays, std::
     return wide;
 }
 
+/// The row of a ray, but for the distance of its hit so far.
+template <class Scalar>
+void set_row(RayRow<Scalar>& row, const StartedRay<Scalar>& start) {
+    using Row = RayRow<Scalar>;
+    for (int k = 0; k < 3; ++k) {
+        row.value[Row::kOrigin + k] = start.ray.origin[k];
+        row.value[Row::kScale + k] = 1 / start.ray.direction[k];
+        row.value[Row::kDirection + k] = start.ray.direction[k];
+    }
+    row.value[Row::kLeaving] = of_bits<Scalar>(start.leaving_id);
+    row.value[Row::kTime] = start.ray.time;
+}
+
 inline int tree_depth(const auto& scene) {
     return std::max(scene.sphere_tree.depth, scene.quad_tree.depth);
 }

@@ -21,7 +21,6 @@ template <class Real, class Work>
 void trace_stream(const CompiledScene<ScalarOf<Real>>& scene, const std::vector<StartedRay<ScalarOf<Real>>>& rays,
                   RayStream<ScalarOf<Real>>& stream, const StreamLists<ScalarOf<Real>>& lists,
                   Intersection intersection, Work& work) {
-    using Row = RayRow<ScalarOf<Real>>;
     for (std::size_t first = 0; first < rays.size(); first += kLanes<Real>) {
         const WideRays<Real> wide = gather<Real>(rays, first);
         Hit<Real> hit;
@@ -30,16 +29,9 @@ void trace_stream(const CompiledScene<ScalarOf<Real>>& scene, const std::vector<
         intersect_all<kEverything>(scene.planes, wide, static_cast<int>(count), hit, work);
         for (int i = 0; i < static_cast<int>(count); ++i) {
             const std::size_t at = first + static_cast<std::size_t>(i);
-            Row& row = stream.rows()[at];
-            for (int k = 0; k < 3; ++k) {
-                row.value[Row::kOrigin + k] = rays[at].ray.origin[k];
-                row.value[Row::kScale + k] = 1 / rays[at].ray.direction[k];
-                row.value[Row::kDirection + k] = rays[at].ray.direction[k];
-            }
-            row.value[Row::kLeaving] = of_bits<ScalarOf<Real>>(rays[at].leaving_id);
-            row.value[Row::kTime] = rays[at].ray.time;
-            row.value[Row::kDistance] = stream.distance()[at] = lane(hit.t, i);
-            stream.primitive_id()[at] = static_cast<std::int32_t>(lane(hit.primitive_id, i));
+            set_row(stream.rows()[at], rays[at]);
+            stream.hits().set(static_cast<std::uint32_t>(at), lane(hit.t, i),
+                              static_cast<std::int32_t>(lane(hit.primitive_id, i)));
         }
     }
     detail::walk_stream<kEverything, Real>(scene.quad_tree, stream.hits(), rays.size(), lists, intersection, work);
