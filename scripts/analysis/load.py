@@ -52,7 +52,7 @@ def load_of_scene(rows):
         source = "" if own[0]["source"] == "counted" else f"  ({own[0]['source']})"
         axis.set_title(f"{name}\n$\\bf{{{max(tests) / mean:.3f}}}${source}", fontsize=8.5)
         axis.grid(axis="x", visible=False)
-        axis.set_ylim(bottom=0)
+    axes[0][0].set_ylim(bottom=0)  # of all, once the tallest bar is there
     for axis in axes.flat[len(ways):]:
         axis.set_visible(False)
     for axis in axes[:, 0]:
