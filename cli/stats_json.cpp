@@ -71,6 +71,9 @@ json stats_json(const RenderRecord& record) {
         json round{{"records_in", work.records_in},
                    {"records_out", work.records_out},
                    {"lanes", work.lanes},
+                   {"shadow_rays", work.shadow_rays},
+                   {"shadow_hits", work.shadow_hits},
+                   {"shadow_lanes", work.shadow_lanes},
                    {"wait_s", work.wait_s}};
         for (std::size_t i = 0; i < wavefront::kStageCount; ++i)
             round["stage_s"][wavefront::kStageNames[i]] = work.stage_s[i];

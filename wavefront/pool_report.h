@@ -23,6 +23,9 @@ struct RoundReport {
     std::int64_t records_in = 0;                ///< advanced by one bounce
     std::int64_t records_out = 0;               ///< of these, alive afterwards
     std::int64_t lanes = 0;                     ///< used for them: records_in / lanes is the occupancy of the registers
+    std::int64_t shadow_rays = 0;               ///< traced by the shadow stage
+    std::int64_t shadow_hits = 0;               ///< of these, that met something before their light
+    std::int64_t shadow_lanes = 0;              ///< used for them, as lanes
     std::array<double, kStageCount> stage_s{};  ///< added over threads
     double wait_s = 0;                          ///< at barriers, added over threads
 
@@ -30,6 +33,9 @@ struct RoundReport {
         records_in += other.records_in;
         records_out += other.records_out;
         lanes += other.lanes;
+        shadow_rays += other.shadow_rays;
+        shadow_hits += other.shadow_hits;
+        shadow_lanes += other.shadow_lanes;
         for (std::size_t i = 0; i < kStageCount; ++i) stage_s[i] += other.stage_s[i];
         wait_s += other.wait_s;
     }

@@ -2,12 +2,14 @@
 ///
 /// Its memory is taken when it is made; within a render it takes no more and throws nothing.
 ///
-/// A stage's time is what passes between start() and stop(); what lies between a stop() and the next start() is
-/// counted for none. In the trace a round is what lies between two calls of end_round().
+/// A stage's time is what passes between start() and stop(), less what stop_within() says of stages within it; what
+/// lies between a stop() and the next start() is counted for none. In the trace a round is what lies between two calls
+/// of end_round().
 #pragma once
 
 #include <omp.h>
 
+#include <utility>
 #include <vector>
 
 #include "core/runtime/settings.h"
@@ -48,13 +50,24 @@ class RoundLog {
     }
     /// Starts the clock of a stage.
     void start() {
-        if (is_on_) mark_s_ = omp_get_wtime();
+        if (!is_on_) return;
+        mark_s_ = omp_get_wtime();
+        within_s_ = 0;
+    }
+    [[nodiscard]] double now() const { return is_on_ ? omp_get_wtime() : 0; }
+    /// What passed since `begin_s`, which now() said, belongs to `stage`, and not to the one that is under way.
+    void stop_within(Stage stage, double begin_s, std::size_t records) {
+        if (!is_on_) return;
+        const double end_s = omp_get_wtime();
+        round().stage_s[static_cast<std::size_t>(stage)] += end_s - begin_s;
+        within_s_ += end_s - begin_s;
+        if (lane_ != nullptr) put_span({stage, begin_s, end_s, static_cast<std::int64_t>(records), 0});
     }
     /// What passed since start() or the last stop() belongs to `stage`, which worked on `records`.
     void stop(Stage stage, std::size_t records) {
         if (!is_on_) return;
         const double now = omp_get_wtime();
-        round().stage_s[static_cast<std::size_t>(stage)] += now - mark_s_;
+        round().stage_s[static_cast<std::size_t>(stage)] += now - mark_s_ - std::exchange(within_s_, 0);
         if (lane_ != nullptr) add_span({stage, mark_s_, now, static_cast<std::int64_t>(records), 0});
         mark_s_ = now;
     }
@@ -74,6 +87,14 @@ class RoundLog {
         work.lanes = static_cast<std::int64_t>(lanes);
         round().add(work);
         traced_.add(work);
+    }
+    /// Shadow rays that were traced, those that met something before their light, and the lanes that were used for
+    /// them.
+    void traced_shadows(std::size_t rays, std::size_t hits, std::size_t lanes) {
+        if (!is_on_) return;
+        round().shadow_rays += static_cast<std::int64_t>(rays);
+        round().shadow_hits += static_cast<std::int64_t>(hits);
+        round().shadow_lanes += static_cast<std::int64_t>(lanes);
     }
     /// `records` are in the pool, which is of this thread alone or of all.
     void occupancy(std::size_t records, Trace::Event::Kind pool) {
@@ -127,11 +148,14 @@ class RoundLog {
     void end_span() {
         if (!has_span_) return;
         has_span_ = false;
-        Trace::Figures figures{{{"records", span_.records}}};
+        put_span(span_);
+    }
+    void put_span(const Span& span) {
+        Trace::Figures figures{{{"records", span.records}}};
         std::size_t i = 1;
         if (batch_ != kNoBatch) figures[i++] = {"batch", batch_};
-        if (span_.append_s > 0) figures[i] = {"append_ns", static_cast<std::int64_t>(span_.append_s * 1e9)};
-        lane_->span(kStageNames[static_cast<std::size_t>(span_.stage)], span_.begin_s, span_.end_s, figures);
+        if (span.append_s > 0) figures[i] = {"append_ns", static_cast<std::int64_t>(span.append_s * 1e9)};
+        lane_->span(kStageNames[static_cast<std::size_t>(span.stage)], span.begin_s, span.end_s, figures);
     }
 
     RoundReport& round() {
@@ -142,6 +166,7 @@ class RoundLog {
 
     bool is_on_;
     double mark_s_ = 0;
+    double within_s_ = 0;  ///< of the stage under way, that belongs to others
     std::size_t round_ = 0;
     std::size_t ahead_ = 0;
     std::vector<RoundReport> rounds_;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <algorithm>
-#include <vector>
+#include <utility>
 
 #include "core/geometry/occlusion.h"
 #include "core/shading/shade.h"
@@ -39,6 +39,7 @@ class ShadowStage {
     RAYPOOL_INLINE void add(const RayRecord<Real>& record, const Scattered<Real>& out, const LightPart<Real>& lights,
                             const Uint32<Real>& cell, unsigned bits, Work& work) {
         const LightSample<Real>& light = lights.light;
+        taken_ += static_cast<std::size_t>(std::popcount(bits));
         if (is_stream()) bits &= ~hidden_by_large_shapes(record, out, light, std::popcount(bits), work);
         const Vec3<Real>& origin = out.start.origin;
         const Vec3<Real>& direction = light.direction;
@@ -62,20 +63,28 @@ class ShadowStage {
         radiance_.template put<Real>(cell, lights.radiance, bits);
     }
 
+    /// Rays that were taken, and of these, that met something before their light.
+    struct Traced {
+        std::size_t rays, hits;
+    };
     /// Traces all rays, and adds what those bring that reach their lights.
-    void run(Contributions<Scalar>& contributions, Work& work) {
+    Traced run(Contributions<Scalar>& contributions, Work& work) {
         if (is_stream()) {
             trace_stream(work);
         } else {
             trace_one_by_one(work);
         }
+        std::size_t reached = 0;
         for (std::size_t first = 0; first < count(); first += kRays) {
             unsigned seen = 0;
             for (std::size_t i = first; i < std::min(first + kRays, count()); ++i)
                 seen |= hits().is_hidden(static_cast<std::uint32_t>(i)) ? 0U : 1U << (i - first);
             contributions.template put_from<Real>(radiance_, first, seen);
+            reached += static_cast<std::size_t>(std::popcount(seen));
         }
         radiance_.clear();
+        const std::size_t rays = std::exchange(taken_, 0);
+        return {rays, rays - reached};
     }
 
   private:
@@ -122,6 +131,7 @@ class ShadowStage {
     RayStream<Scalar> stream_;
     const StreamLists<Scalar>& lists_;
     Contributions<Scalar> radiance_;
+    std::size_t taken_ = 0;  ///< since the last run: those in the stream, and those that large shapes hide
 };
 
 /// What stages without light sampling have in its place.

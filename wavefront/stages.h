@@ -91,6 +91,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         log_.stop(Stage::Shade, count);
 
         trace_shadow_rays();
+        log_.start();
         const std::size_t ends = contributions_.count();
         accumulate();
         log_.stop(Stage::Accumulate, ends);
@@ -228,11 +229,10 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         if constexpr (features.lights) {
             if (const unsigned bits = mask_bits(lights.has_shadow_ray) & hits; bits != 0) {
                 if (!shadow_.has_room()) {
-                    shadow_.run(contributions_, intersect_.work());
+                    trace_shadow_rays();
                     accumulate();
                 }
                 shadow_.add(record, out, lights, cell_of(record.key), bits, intersect_.work());
-                shadow_rays_ += std::popcount(bits);
             }
         }
         if constexpr (features.emissive) {
@@ -273,11 +273,12 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
     /// Traces the shadow rays that wait, and adds what they bring.
     void trace_shadow_rays() {
         if constexpr (features.lights) {
-            const std::size_t rays = shadow_.count();
+            const double begin_s = log_.now();
+            const auto [rays, hits] = shadow_.run(contributions_, intersect_.work());
             if (rays == 0) return;
-            log_.start();
-            shadow_.run(contributions_, intersect_.work());
-            log_.stop(Stage::Shadow, rays);
+            log_.stop_within(Stage::Shadow, begin_s, rays);
+            log_.traced_shadows(rays, hits, (rays + kRays - 1) / kRays * kRays);
+            shadow_rays_ += static_cast<std::int64_t>(rays);
         }
     }
 

@@ -32,6 +32,7 @@ class alignas(64) PacketTracer final : public recursive::LineTracer {
           seed_(random_seed(settings.seed, settings.sampler)),
           depth_(settings.depth),
           roulette_(settings.roulette),
+          light_sampling_(needed_light_sampling(scene.features, settings)),
           converter_(framebuffer.fixed_point()) {
         std::fill_n(step_, kRays, 1U);
     }
@@ -65,6 +66,7 @@ class alignas(64) PacketTracer final : public recursive::LineTracer {
     }
     void report(ThreadReport& work, SampleStatistics& statistics) const override {
         work.segments = segments_;
+        work.shadow_rays = shadow_rays_;
         statistics = converter_.statistics();
     }
 
@@ -85,6 +87,7 @@ class alignas(64) PacketTracer final : public recursive::LineTracer {
         ray_.time = select(is_new, made.time, ray_.time);
         throughput_ = select<Real>(is_new, vec3<Real>(Real(1), Real(1), Real(1)), throughput_);
         leaving_id_ = select(is_new, Int<Real>(kNoPrimitive), leaving_id_);
+        density_ = select(is_new, Real(0), density_);
         is_alive_ = is_alive_ || is_new;
     }
 
@@ -96,7 +99,9 @@ class alignas(64) PacketTracer final : public recursive::LineTracer {
         const Mask<Real> is_hit = as_mask<Real>(hit.primitive_id >= Int<Real>(0));
         const unsigned hits = mask_bits(is_hit) & active;
         if (const unsigned misses = active & ~hits; misses != 0)
-            contribute(escaping_radiance<features, Real>(scene_, ray_.direction, throughput_), misses);
+            contribute(
+                escaping_radiance<features, Real>(scene_, ray_.direction, throughput_, light_sampling_, density_),
+                misses);
 
         is_alive_ = is_alive_ && is_hit;
         const Uint step = load<Uint>(step_);
@@ -105,8 +110,19 @@ class alignas(64) PacketTracer final : public recursive::LineTracer {
         if (hits == 0) return;  // and there may be nothing to hit
 
         const Int<Real> id = select(is_hit, hit.primitive_id, Int<Real>(0));
-        const Scattered<Real> out = scatter<features, Real>(
-            scene_, ray_, hit.t, id, throughput_, {load<Uint>(pixel_), load<Uint>(sample_)}, step, seed_, 0, roulette_);
+        LightPart<Real> lights;
+        if constexpr (features.lights) {
+            lights.sampling = light_sampling_;
+            lights.arriving_density = density_;
+            lights.depth = depth_;
+        }
+        const Scattered<Real> out =
+            scatter<features, Real>(scene_, ray_, hit.t, id, throughput_, {load<Uint>(pixel_), load<Uint>(sample_)},
+                                    step, seed_, 0, roulette_, features.lights ? &lights : nullptr);
+        if constexpr (features.lights) {
+            follow_shadow_rays(out, lights, mask_bits(lights.has_shadow_ray) & hits);
+            density_ = lights.density;
+        }
         if constexpr (features.emissive) {
             if (const unsigned ends = mask_bits(out.is_emitter) & hits; ends != 0) contribute(out.throughput, ends);
         }
@@ -118,7 +134,18 @@ class alignas(64) PacketTracer final : public recursive::LineTracer {
         is_alive_ = is_alive_ && out.is_alive && !is_deepest;
     }
 
-    /// Adds the radiance that paths end with, of the lanes in `bits`.
+    /// What the shadow rays of the lanes in `bits` bring.
+    RAYPOOL_INLINE void follow_shadow_rays(const Scattered<Real>& out, const LightPart<Real>& lights, unsigned bits) {
+        if (bits == 0) return;
+        shadow_rays_ += std::popcount(bits);
+        const LightSample<Real>& light = lights.light;
+        const Mask<Real> is_hidden = are_occluded<features>(
+            embree_, scene_, {out.start.origin, light.direction, ray_.time}, out.start.leaving_id,
+            {light.t, light.primitive_id}, lights.has_shadow_ray && is_alive_);
+        contribute(lights.radiance, bits & ~mask_bits(is_hidden));
+    }
+
+    /// Adds the radiance that paths bring, of the lanes in `bits`.
     RAYPOOL_INLINE void contribute(const Vec3<Real>& radiance, unsigned bits) {
         alignas(64) float channel[3][kRays];
         for (int k = 0; k < 3; ++k) radiance[k].copy_to(channel[k], stdx::vector_aligned);
@@ -143,8 +170,10 @@ class alignas(64) PacketTracer final : public recursive::LineTracer {
     RandomSeed seed_;
     std::int32_t depth_;
     bool roulette_;
+    LightSampling light_sampling_;
     SampleConverter converter_;
     std::int64_t segments_ = 0;
+    std::int64_t shadow_rays_ = 0;
     Addition addition_ = Addition::Plain;
 
     // The paths, a lane each.
@@ -152,6 +181,7 @@ class alignas(64) PacketTracer final : public recursive::LineTracer {
     Ray<Real> ray_{};
     Vec3<Real> throughput_{};
     Int<Real> leaving_id_{};
+    Real density_{};  ///< of the ray's direction, where lights were sampled too; else 0
     alignas(64) std::uint32_t pixel_[kRays]{};
     alignas(64) std::uint32_t sample_[kRays]{};
     alignas(64) std::uint32_t step_[kRays];  ///< 0 only before a path's first segment
@@ -187,8 +217,6 @@ MakeTracer packet_tracers(const CompiledScene<float>& scene) {
 std::unique_ptr<RenderSession> EmbreeEngine::begin(const CompiledScene<float>& scene, const RenderSettings& settings,
                                                    Framebuffer& framebuffer) const {
     if (settings.split_depth > 0) throw InputError(name() + ": follows one path at a time; --split-depth must be 0");
-    if (needed_light_sampling(scene.features, settings) != LightSampling::None)
-        throw InputError(name() + ": traces no shadow rays; --light-sampling must be none");
     if (settings.count_work) throw InputError(name() + ": Embree does not say which boxes it tests");
     if (settings.cost_image != nullptr) throw InputError(name() + ": has no cost of a pixel");
     const MakeTracer make = dispatch_features(needed_features(scene.features, settings), [&]<Features features>() {

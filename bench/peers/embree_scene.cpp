@@ -82,14 +82,15 @@ EmbreeScene::EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions
 }
 
 template <class Block>
-void EmbreeScene::attach(Shapes<Block>& shapes, bool can_move, RTCIntersectFunctionN intersect) {
+void EmbreeScene::attach(Shapes<Block>& shapes, bool can_move, const ShapeFunctions::OfKind& functions) {
     if (shapes.blocks.empty()) return;
     const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(shapes.blocks.size()));
     rtcSetGeometryUserData(geometry, &shapes);
     if (can_move) rtcSetGeometryTimeStepCount(geometry, 2);
     rtcSetGeometryBoundsFunction(geometry, set_bounds<Block>, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, intersect);
+    rtcSetGeometryIntersectFunction(geometry, functions.intersect);
+    rtcSetGeometryOccludedFunction(geometry, functions.occlude);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_.get(), geometry);
     rtcReleaseGeometry(geometry);

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/geometry/occlusion.h"
 #include "core/shading/compiled_scene.h"
 #include "wavefront/wide_rays.h"
 
@@ -22,6 +23,10 @@ using Packet = stdx::native_simd<float>;
 template <class Real>
 using RayHit =
     std::conditional_t<kLanes<Real> == 1, RTCRayHit, std::conditional_t<kLanes<Real> == 16, RTCRayHit16, RTCRayHit8>>;
+/// Its rays toward lights.
+template <class Real>
+using ShadowRay =
+    std::conditional_t<kLanes<Real> == 1, RTCRay, std::conditional_t<kLanes<Real> == 16, RTCRay16, RTCRay8>>;
 
 /// A field of these as the kernels take it.
 template <class T>
@@ -39,6 +44,7 @@ template <class Real>
 struct Query {
     RTCIntersectContext context;
     wavefront::WideRays<Real> rays;
+    Hit<Real> light{};  ///< of shadow rays: what they are to reach
 };
 
 /// Spheres or quads, each a block by itself, so that a test reads a line or two of the cache.
@@ -50,15 +56,24 @@ struct Shapes {
 
 /// What Embree calls for a shape, by its kind.
 struct ShapeFunctions {
-    RTCIntersectFunctionN sphere;
-    RTCIntersectFunctionN quad;
+    struct OfKind {
+        RTCIntersectFunctionN intersect;
+        RTCOccludedFunctionN occlude;
+    };
+    OfKind sphere;
+    OfKind quad;
 
     template <Features features, class Real>
     static ShapeFunctions make() {
-        return {intersect<features, Real, SphereBlock<float, 1>>, intersect<features, Real, PlanarBlock<float, 1>>};
+        return {of_kind<features, Real, SphereBlock<float, 1>>(), of_kind<features, Real, PlanarBlock<float, 1>>()};
     }
 
   private:
+    template <Features features, class Real, class Block>
+    static OfKind of_kind() {
+        return {intersect<features, Real, Block>, occlude<features, Real, Block>};
+    }
+
     /// Tests a shape against the rays that Embree says are valid.
     template <Features features, class Real, class Block>
     static void intersect(const RTCIntersectFunctionNArguments* args) {
@@ -76,6 +91,24 @@ struct ShapeFunctions {
         set(rayhit.ray.tfar, select(is_closer, hit.t, t));
         set(rayhit.hit.primID, hit.primitive_id);
     }
+
+    /// Whether a shape hides the lights of the shadow rays that Embree says are valid: that of `Occlusion`, for a
+    /// register.
+    template <Features features, class Real, class Block>
+    static void occlude(const RTCOccludedFunctionNArguments* args) {
+        auto& ray = *reinterpret_cast<ShadowRay<Real>*>(args->ray);
+        const auto& query = *reinterpret_cast<const Query<Real>*>(args->context);
+        const Block& shape = static_cast<const Shapes<Block>*>(args->geometryUserPtr)->blocks[args->primID];
+        Hit<Real> hit = query.light;
+        if constexpr (Simd<Real>) {
+            const Int<Real> valid(args->valid, stdx::element_aligned);
+            hit.t = select(as_mask<Real>(valid != Int<Real>(0)), hit.t, Real(0));
+        }
+        const Mask<Real> is_before = wavefront::intersect_lane<features, InBox::Yes, Real>(shape, 0, query.rays, hit) &&
+                                     as_mask<Real>(query.light.primitive_id != Int<Real>(shape.id[0]));
+        if (none(is_before)) return;
+        set(ray.tfar, select(is_before, Real(-kInfinity<float>), get<Real>(ray.tfar)));
+    }
 };
 
 class EmbreeScene {
@@ -88,15 +121,9 @@ class EmbreeScene {
     /// The closest hits, `hit` or closer, of the rays whose `valid` is not 0.
     template <class Real>
     RAYPOOL_INLINE Hit<Real> closest(Query<Real>& query, const Hit<Real>& hit, const Int<Real>& valid) const {
-        const Ray<Real>& ray = query.rays.ray;
         RayHit<Real> rayhit;
-        set(rayhit.ray.org_x, ray.origin[0]), set(rayhit.ray.dir_x, ray.direction[0]);
-        set(rayhit.ray.org_y, ray.origin[1]), set(rayhit.ray.dir_y, ray.direction[1]);
-        set(rayhit.ray.org_z, ray.origin[2]), set(rayhit.ray.dir_z, ray.direction[2]);
-        set(rayhit.ray.tnear, Real(0)), set(rayhit.ray.tfar, hit.t), set(rayhit.ray.time, ray.time);
-        set(rayhit.ray.mask, Int<Real>(-1)), set(rayhit.ray.flags, Int<Real>(0));
+        start<Real>(query, hit.t, rayhit.ray);
         set(rayhit.hit.primID, hit.primitive_id);
-        rtcInitIntersectContext(&query.context);
         alignas(64) std::int32_t is_valid[kLanes<Real>];
         set(is_valid, valid);
         if constexpr (kLanes<Real> == 1) {
@@ -109,9 +136,37 @@ class EmbreeScene {
         return {get<Real>(rayhit.ray.tfar), get<Int<Real>>(rayhit.hit.primID)};
     }
 
+    /// Which of the rays whose `valid` is not 0 meet something before query.light.
+    template <class Real>
+    RAYPOOL_INLINE Mask<Real> occluded(Query<Real>& query, const Int<Real>& valid) const {
+        ShadowRay<Real> ray;
+        start<Real>(query, query.light.t, ray);
+        alignas(64) std::int32_t is_valid[kLanes<Real>];
+        set(is_valid, valid);
+        if constexpr (kLanes<Real> == 1) {
+            rtcOccluded1(scene_.get(), &query.context, &ray);
+        } else if constexpr (kLanes<Real> == 16) {
+            rtcOccluded16(is_valid, scene_.get(), &query.context, &ray);
+        } else {
+            rtcOccluded8(is_valid, scene_.get(), &query.context, &ray);
+        }
+        return get<Real>(ray.tfar) < Real(0);
+    }
+
   private:
+    /// Sets the rays that Embree is to follow up to `end`.
+    template <class Real>
+    RAYPOOL_INLINE static void start(Query<Real>& query, const Real& end, auto& to) {
+        const Ray<Real>& ray = query.rays.ray;
+        set(to.org_x, ray.origin[0]), set(to.dir_x, ray.direction[0]);
+        set(to.org_y, ray.origin[1]), set(to.dir_y, ray.direction[1]);
+        set(to.org_z, ray.origin[2]), set(to.dir_z, ray.direction[2]);
+        set(to.tnear, Real(0)), set(to.tfar, end), set(to.time, ray.time);
+        set(to.mask, Int<Real>(-1)), set(to.flags, Int<Real>(0));
+        rtcInitIntersectContext(&query.context);
+    }
     template <class Block>
-    void attach(Shapes<Block>& shapes, bool can_move, RTCIntersectFunctionN intersect);
+    void attach(Shapes<Block>& shapes, bool can_move, const ShapeFunctions::OfKind& functions);
 
     template <auto release>
     struct Release {
@@ -139,6 +194,33 @@ template <Features features>
     Hit<float> hit;
     raypool::detail::test_untreed<features, Shapes>(scene, spread, hit, search);
     return search.embree->closest<float>(query, hit, -1);
+}
+
+/// Whether anything lies before a light that one ray is to reach.
+template <Features features>
+[[gnu::noinline]] bool is_occluded(const SceneView<float>& scene, const Ray<float>& ray, std::int32_t leaving_id,
+                                   Occlusion<float> light, EmbreeSearch& search) {
+    using Shapes = Wide<float, kTreeWidth<float>>;
+    Query<float> query{{}, {ray, ray_inverse<float>(ray.direction), leaving_id}, {light.t, light.light_id}};
+    const SpreadRay<Shapes> spread(ray, query.rays.inverse, leaving_id);
+    raypool::detail::test_untreed<features, Shapes>(scene, spread, light, search);
+    return light.is_hidden || search.embree->occluded<float>(query, -1);
+}
+
+/// Which of the rays in `is_active` meet something before their lights; what is said of the others means nothing.
+template <Features features>
+RAYPOOL_INLINE Mask<Packet> are_occluded(const EmbreeScene& embree, const SceneView<float>& scene,
+                                         const Ray<Packet>& ray, const Int<Packet>& leaving_id,
+                                         const Hit<Packet>& light, const Mask<Packet>& is_active) {
+    Query<Packet> query{{}, {ray, ray_inverse<Packet>(ray.direction), leaving_id}, light};
+    NoTestCount work;
+    Mask<Packet> is_hidden =
+        wavefront::hidden_by_any<features>(scene.large_spheres, query.rays, kLanes<Packet>, light, work);
+    if constexpr (features.planar)
+        is_hidden =
+            is_hidden || wavefront::hidden_by_any<features>(scene.planes, query.rays, kLanes<Packet>, light, work);
+    return is_hidden ||
+           embree.occluded<Packet>(query, select(is_active && !is_hidden, Int<Packet>(-1), Int<Packet>(0)));
 }
 
 /// The closest hits of the rays in `is_active`; those of the others mean nothing.

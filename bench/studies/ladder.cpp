@@ -52,6 +52,7 @@ Cells parts_of_pool(const RenderReport& report, const Features& features, const 
             {"intersect_s", stage_s(report, Stage::Intersect)},
             {"shade_s", shade_s - traffic_s},
             {"sort_s", stage_s(report, Stage::Sort)},
+            {"shadow_s", stage_s(report, Stage::Shadow)},
             {"accumulate_s", stage_s(report, Stage::Accumulate)},
             {"traffic_s", traffic_s},
             {"append_s", stage_s(report, Stage::Append)},
@@ -64,6 +65,7 @@ std::vector<Case> ladder_cases(const StudyOptions& options) {
     const Plan plan = plan_of(options, {8, 24}, {5, 7}, core_count());
     RenderSettings settings = plan.settings;
     settings.schedule = parse_schedule("dynamic");
+    if (scene->compiled.features.lights) settings.light_sampling = LightSampling::Mis;
     std::vector<Case> cases;
     const auto add_rate = [&](const NamedEngine& engine) {
         const auto more = [](const RenderReport& report) {
@@ -116,6 +118,7 @@ Study ladder_study() {
              {"intersect_s", ColumnType::Real, "finding the closest hits; seconds"},
              {"shade_s", ColumnType::Real, "shading, without traffic_s; seconds"},
              {"sort_s", ColumnType::Real, "sorting records; seconds"},
+             {"shadow_s", ColumnType::Real, "tracing shadow rays, where a scene has lights; seconds"},
              {"accumulate_s", ColumnType::Real, "adding radiance to the framebuffer; seconds"},
              {"traffic_s", ColumnType::Real,
               "estimate: reading and writing records while shading, records times a pass that does only that; seconds"},

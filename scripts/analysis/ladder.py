@@ -14,6 +14,7 @@ PARTS = [
     ("generate_s", "generate camera rays", "#004C78", ""),
     ("intersect_s", "intersect", SKY, ""),
     ("shade_s", "shade", GREEN, ""),
+    ("shadow_s", "trace shadow rays", "#9E9AC8", ""),
     ("sort_s", "sort", "#7FD1B9", "xx"),
     ("accumulate_s", "accumulate", "#C8EFE4", ".."),
     ("traffic_s", "move records (estimate)", ORANGE, "//"),
@@ -22,7 +23,14 @@ PARTS = [
     ("end_s", "wait at the end", PINK, "\\\\"),
     ("rest", "rest", "#FFFFFF", ""),
 ]
+SHORT = {"shadow_s": "shadow rays", "traffic_s": "moved records (estimate)", "barrier_s": "barriers",
+         "end_s": "waiting at the end"}
 WHOLE = ("whole path, not split", "#999999", "")
+
+
+def parts_in(rows):
+    """PARTS without shadow rays where there are none."""
+    return [part for part in PARTS if part[0] != "shadow_s" or any(row.get("shadow_s") for row in rows)]
 
 
 def thread_ns(row):
@@ -36,9 +44,10 @@ def parts_of(rows):
     if not split:
         return [(length, *WHOLE)]
     in_all = [row["seconds"] * row["threads"] for row in split]
-    shares = [median(row[column] / whole for row, whole in zip(split, in_all)) for column, *_ in PARTS[:-1]]
+    shown = parts_in(split)
+    shares = [median(row[column] / whole for row, whole in zip(split, in_all)) for column, *_ in shown[:-1]]
     shares.append(max(0, 1 - sum(shares)))
-    return [(length * share / sum(shares), *style) for share, (_, *style) in zip(shares, PARTS)]
+    return [(length * share / sum(shares), *style) for share, (_, *style) in zip(shares, shown)]
 
 
 def ratio_text(rows, recursive):
@@ -105,14 +114,14 @@ def rates(here, threads):
 
 
 def parts(here, threads):
-    table = Table(f"Time of a thread for each segment, ns, {threads_text(threads)}",
-                  ["rung", "generate", "intersect", "shade", "sort", "accumulate", "moved records (estimate)", "append",
-                   "barriers", "waiting at the end", "rest", "in all"])
     split = where(here, clocks="on")
+    columns = [column for column, *_ in parts_in(split)[:-1]]
+    table = Table(f"Time of a thread for each segment, ns, {threads_text(threads)}",
+                  ["rung", *(SHORT.get(column, column.removesuffix("_s")) for column in columns), "rest", "in all"])
     for engine in distinct(split, "engine"):
         rows = where(split, engine=engine)
         in_all = median(thread_ns(row) for row in rows)
-        found = [median(numbers(rows, column)) / rows[0]["segments"] * 1e9 for column, *_ in PARTS[:-1]]
+        found = [median(numbers(rows, column)) / rows[0]["segments"] * 1e9 for column in columns]
         rest = in_all
         for ns in found:
             rest -= ns

@@ -40,6 +40,8 @@ void expect_same(const std::string& name, const CompiledScene<float>& scene, con
         EXPECT_TRUE(same_image("embree_" + name, expected, got, how));
         EXPECT_EQ(got.report.segments(), expected.report.segments()) << how;
         EXPECT_EQ(got.report.paths(), expected.report.paths()) << how;
+        EXPECT_EQ(got.report.total(&ThreadReport::shadow_rays), expected.report.total(&ThreadReport::shadow_rays))
+            << how;
     }
 }
 
@@ -86,6 +88,16 @@ TEST_P(EmbreeEngineOfScene, MakesItByTheRulesOfEveryPath) {
     }
 }
 
+TEST_P(EmbreeEngineOfScene, MakesItWithLightSampling) {
+    const CompiledScene<float> scene = compile<float>(small_scene(GetParam(), 60));
+    RenderSettings settings = settings_of(4);
+    settings.threads = 2;
+    for (const LightSampling sampling : {LightSampling::Light, LightSampling::Mis}) {
+        settings.light_sampling = sampling;
+        expect_same(GetParam(), scene, settings);
+    }
+}
+
 std::vector<std::string> scene_names() {
     std::vector<std::string> names{"textures"};
     for (const BuiltinSceneText& scene : builtin_scene_texts()) names.emplace_back(scene.name);
@@ -94,7 +106,7 @@ std::vector<std::string> scene_names() {
 INSTANTIATE_TEST_SUITE_P(BuiltIn, EmbreeEngineOfScene, testing::ValuesIn(scene_names()),
                          [](const auto& info) { return info.param; });
 
-/// Finds each hit by our trees and by Embree, and counts those that differ.
+/// Finds each hit, and whether a light is hidden, by our trees and by Embree, and counts the answers that differ.
 struct BothSearches : peers::EmbreeSearch {
     std::int64_t all = 0;
     std::int64_t differing = 0;
@@ -111,6 +123,16 @@ Hit<float> closest_hit(const SceneView<float>& scene, const Ray<float>& ray, std
     return ours;
 }
 
+template <Features features>
+bool is_occluded(const SceneView<float>& scene, const Ray<float>& ray, std::int32_t leaving_id,
+                 const Occlusion<float>& light, BothSearches& search) {
+    ++search.all;
+    NoTestCount nothing;
+    const bool ours = raypool::is_occluded<features, float>(scene, ray, leaving_id, light, nothing);
+    if (ours != peers::is_occluded<features>(scene, ray, leaving_id, light, search)) ++search.differing;
+    return ours;
+}
+
 struct HitCount {
     std::int64_t differing = 0;
     std::int64_t all = 0;
@@ -121,13 +143,15 @@ HitCount count_hits(const Scene& described, std::int64_t spp) {
     const peers::EmbreeScene embree(scene, peers::ShapeFunctions::make<kEverything, float>());
     BothSearches search;
     search.embree = &embree;
+    ImageSettings settings;
+    settings.light_sampling = LightSampling::Mis;
     recursive::Tracer<kEverything, float, BothSearches, Splitting::Off> tracer(
-        scene, {}, FixedPoint::make(spp, scene.max_radiance), search);
+        scene, settings, fixed_point<float>(scene, settings, spp), search);
     for (std::int64_t y = 0; y < scene.height; ++y)
         for (std::int64_t x = 0; x < scene.width; ++x)
             for (std::int64_t s = 0; s < spp; ++s) tracer.sample<recursive::Form::Iterative>(x, y, s);
-    EXPECT_EQ(tracer.work().all, tracer.segments()) << "the tracer finds hits in another way";
-    return {tracer.work().differing, tracer.segments()};
+    EXPECT_EQ(tracer.work().all, tracer.segments() + tracer.shadow_rays()) << "the tracer finds hits in another way";
+    return {tracer.work().differing, tracer.work().all};
 }
 
 /// Small spheres, still or in motion, or squares turned at random, strewn in a cube of edge 20, seen from `distance`.

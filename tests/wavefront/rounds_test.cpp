@@ -51,6 +51,48 @@ TEST_P(Report, CountsTheTestsOfRecursionWhereRaysAreTracedOneByOne) {
     EXPECT_GE(in_streams.report.total(&ThreadReport::primitive_tests), in_streams.report.segments() / 2);
 }
 
+TEST(Report, CountsTheShadowRaysOfRecursionAndInEachPoolAsManyThatMeetSomething) {
+    const CompiledScene<float> scene = compile<float>(small_scene("cornell", 24));
+    const auto with_lights = [](int threads) {
+        RenderSettings settings = settings_of(2, 50, threads);
+        settings.light_sampling = LightSampling::Mis;
+        return settings;
+    };
+    const Rendered expected = render_recursive(scene, with_lights(1));
+    std::int64_t hits = -1;
+    for (const Variant& variant : variants()) {
+        for (const int threads : {1, 3}) {
+            SCOPED_TRACE(fmt::format("{}, {} threads", variant.name, threads));
+            const Rendered got = render_pool(scene, with_lights(threads), variant.pool);
+            const RenderReport& report = got.report;
+            EXPECT_EQ(got.hash(), expected.hash());
+            EXPECT_EQ(report.total(&ThreadReport::shadow_rays), expected.report.total(&ThreadReport::shadow_rays));
+            EXPECT_EQ(sum(report, &RoundReport::shadow_rays), report.total(&ThreadReport::shadow_rays));
+            if (hits < 0) hits = sum(report, &RoundReport::shadow_hits);
+            EXPECT_EQ(sum(report, &RoundReport::shadow_hits), hits);
+            double shadow_s = 0;
+            double stages_s = 0;
+            for (const RoundReport& round : pool_report(report).rounds) {
+                EXPECT_LE(round.shadow_hits, round.shadow_rays);
+                EXPECT_GE(round.shadow_lanes, round.shadow_rays);
+                EXPECT_LE(round.shadow_lanes, 16 * round.shadow_rays);
+                EXPECT_EQ(round.shadow_rays > 0, round.stage_s[static_cast<std::size_t>(Stage::Shadow)] > 0);
+                for (const double seconds : round.stage_s) {
+                    EXPECT_GE(seconds, 0) << "the shadow rays that are traced within a stage are none of its";
+                    stages_s += seconds;
+                }
+                shadow_s += round.stage_s[static_cast<std::size_t>(Stage::Shadow)];
+            }
+            double busy_s = 0;
+            for (const ThreadReport& thread : report.threads) busy_s += thread.busy_s;
+            EXPECT_GT(shadow_s, 0);
+            EXPECT_LE(stages_s, busy_s);
+        }
+    }
+    EXPECT_GT(hits, 0);
+    EXPECT_LT(hits, expected.report.total(&ThreadReport::shadow_rays));
+}
+
 TEST_P(Report, CountsTheListsOfEachLevel) {
     const CompiledScene<float> scene = compile<float>(small_scene(GetParam(), 24));
     PoolSettings pool;

@@ -106,6 +106,21 @@ TEST(PoolTrace, OfAPoolForEachThreadShowsTheRoundsOfEach) {
     }
 }
 
+TEST(PoolTrace, ShowsTheShadowRaysThatAreTracedWithinAStageInIt) {
+    const CompiledScene<float> scene = compile<float>(small_scene("cornell", 24));
+    for (const CameraStage camera : {CameraStage::Staged, CameraStage::Beam}) {
+        RenderSettings settings;
+        settings.end_sample = 3;
+        settings.threads = 2;
+        settings.light_sampling = LightSampling::Mis;
+        const auto [trace, rendered] = traced(scene, settings, {.camera = camera, .capacity = 100});
+        expect_agreement(trace, rendered.report);
+        std::int64_t shadow_rays = 0;
+        for (const Trace::Lane& lane : trace.lanes()) shadow_rays += sum(named(lane, "shadow"), "records");
+        EXPECT_EQ(shadow_rays, rendered.report.total(&ThreadReport::shadow_rays));
+    }
+}
+
 TEST(PoolTrace, OfARenderWithoutSegmentsIsEmpty) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 8));
     RenderSettings settings;
