@@ -73,6 +73,8 @@ CaseMethods texture_cases();
 CaseMethods size_cases();
 CaseMethods planar_cases();
 CaseMethods light_cases();
+CaseMethods environment_cases();
+CaseMethods environment_direction_cases();
 CaseMethods image_cases();
 
 }  // namespace raypool::stability

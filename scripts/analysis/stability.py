@@ -11,12 +11,12 @@ LINES = {"naive": "--", "ours": "-", "other": ":"}
 PALETTE = {"naive": [COLOURS[3], COLOURS[1], COLOURS[5]], "ours": [COLOURS[0], COLOURS[6], COLOURS[2]],
            "other": [COLOURS[4], COLOURS[2]]}
 ROWS = {"spheres": "1", "leaving": "2", "boxes": "3", "scattering": "4", "paths": "56", "others": "78+",
-        "lights": "L"}
+        "lights": "L", "skies": "S"}
 
 
 def belongs(row, rows):
     row = row["row"]
-    first = {"10": "8", "11": "L"}.get(row[:2], row[0])  # large images go with the checkers
+    first = {"10": "8", "11": "L" if row < "11h" else "S"}.get(row[:2], row[0])  # large images go with the checkers
     return first in rows
 
 
@@ -126,6 +126,8 @@ CURVES = {
     "lights": ("Lights and the shadow rays toward them",
                "What to see: a shadow ray that stops at a part of the way lets light through, one that does not meets the "
                "lamp; and 1 - cos has nothing left of a light that is far."),
+    "skies": ("Images around the scene", "What to see: one running sum knows no small texels beside a sun, a density without "
+              "the sine is wrong at every height, and the arc cosine cannot tell rows at the poles."),
 }
 HOW = (" Dashed: naive; solid: ours; dotted: others. The grey line is the tolerance, the shaded part lies beyond what is "
        "asked of ours. An error of 0 lies on the lower edge.")

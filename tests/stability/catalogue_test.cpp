@@ -95,6 +95,17 @@ const Point kPoints[] = {
     {"pixel-jitter", "pixel + jitter, float", 65'536, 1e-3, 4e-3},
     {"splitting", "all branches at once", 7, 128, 128},
     {"quad-seam", "ours, float", 1e3, 0, 0},
+    {"black-image", "a running sum divided by its last, float", 0, 1, 1},
+    {"black-image", "the first sum not below the number, float", 1, 0x1p-24, 0x1p-24},
+    {"lit-square", "radiance between texels, density by texel, float", 1, 0.4, 0.475},  // 7 / 16
+    {"one-colour", "by the sine of a texel's middle, float", 1, 0.3633, 0.3635},        // 1 - 2 / pi
+    {"one-colour-floor", "even angles in a texel, float", 1, 0.26, 0.29},               // 4 / pi - 1
+    {"sun-share", "a running sum of all texels, float", 1024, 0.005, 0.05},
+    {"sun-share", "a running sum of all texels, double", 1024, 0.005, 0.05},
+    {"sun-height", "a density without the sine, float", 90, 0.355, 0.365},  // 1 - 2 / pi
+    {"sky-pole", "arc cosine of the height, float", 16384, 0.2, 0.4},
+    {"sky-seam", "a turn added below 0, float", 1e-7, 0.45, 0.55},
+    {"sun-edge", "looked up by the direction, float", 1024, 1e-4, 1e-3},
 };
 
 class SharpPoint : public testing::TestWithParam<Point> {};
