@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/stability/around.h"
 #include "bench/stability/case.h"
 #include "bench/stability/failures_json.h"
 #include "bench/stability/methods.h"
@@ -18,12 +19,25 @@ namespace raypool::stability {
 namespace {
 
 /// In the order of NaiveVariant.
-constexpr const char* kVariantNames[] = {"least distance", "half-b", "truncation", "id alone"};
+constexpr const char* kVariantNames[] = {"least distance",   "half-b",           "truncation", "id alone",
+                                         "whole shadow ray", "short shadow ray", "no sine"};
 
 NaiveVariant variant_named(const std::string& name) {
     const auto* const found = std::find(std::begin(kVariantNames), std::end(kVariantNames), name);
     RAYPOOL_CHECK(found != std::end(kVariantNames), "failures.json names a variant that there is");
     return static_cast<NaiveVariant>(found - std::begin(kVariantNames));
+}
+
+Scene scene_of(const nlohmann::json& entry) {
+    Scene scene = parse_scene(entry.at("scene").dump(), "bench/stability/failures.json", {});
+    if (entry.contains("sky")) {
+        const nlohmann::json& sky = entry.at("sky");
+        scene.background.image = around<float>(sky.at("rows"), [&](std::int64_t column, std::int64_t row) {
+                                     const bool is_sun = column == sky.at("sun_column") && row == sky.at("sun_row");
+                                     return sky.at(is_sun ? "sun" : "radiance").get<double>();
+                                 }).image;
+    }
+    return scene;
 }
 
 }  // namespace
@@ -32,19 +46,19 @@ const std::vector<Failure>& all_failures() {
     static const std::vector<Failure> kFailures = [] {
         std::vector<Failure> all;
         for (const nlohmann::json& entry : nlohmann::json::parse(kFailuresJson))
-            all.push_back({entry.at("id"), entry.at("row"), variant_named(entry.at("variant")),
-                           parse_scene(entry.at("scene").dump(), "bench/stability/failures.json", {})});
+            all.push_back({entry.at("id"), entry.at("row"), variant_named(entry.at("variant")), scene_of(entry)});
         return all;
     }();
     return kFailures;
 }
 
-FailureImages render_failure(NaiveVariant variant, const Scene& scene, const RenderSettings& settings) {
+FailureImages render_failure(NaiveVariant variant, const Scene& scene, RenderSettings settings) {
+    settings.light_sampling = LightSampling::Light;
     const CompiledScene<float> narrow = compile<float>(scene);
     const CompiledScene<double> wide = compile<double>(scene);
     const recursive::IterativeEngine engine;
     const auto image = [&](const auto& render) {
-        Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(settings.end_sample, narrow.max_radiance));
+        Framebuffer framebuffer(scene.width, scene.height, fixed_point(narrow, settings, settings.end_sample));
         render(framebuffer);
         return framebuffer.image(settings.end_sample);
     };

@@ -2,11 +2,13 @@
 /// the method makes the difference.
 #include <array>
 #include <functional>
+#include <numbers>
+#include <vector>
 
 #include "bench/naive/checkers.h"
 #include "bench/naive/spheres.h"
 #include "bench/stability/failures.h"
-#include "core/geometry/traverse.h"
+#include "core/geometry/occlusion.h"
 #include "core/shading/shade.h"
 #include "recursive/engine.h"
 
@@ -82,6 +84,36 @@ CompiledScene<float> plain_checkers(Scene scene, bool is_odd) {
     return compile<float>(scene);
 }
 
+/// Whether nothing lies within that part of the way to the sampled point of a light.
+bool is_free(const NaiveSpheres& scene, const RayStart<float>& start, const LightSample<float>& light, float part) {
+    const Vec3<float> point = along<float>(start.origin, light.t, light.direction);
+    const Vec3<float> to = point - start.origin;
+    const float distance = to.norm();
+    return !(scene.closest_hit({start.origin, to / distance, 0}, start.leaving_id).t < part * distance);
+}
+bool is_seen(NaiveVariant variant, const SceneView<float>& ours, const NaiveSpheres& scene,
+             const RayStart<float>& start, const LightSample<float>& light) {
+    if (variant == NaiveVariant::WholeShadowRay) return is_free(scene, start, light, 1);
+    if (variant == NaiveVariant::ShortShadowRay) return is_free(scene, start, light, 1 - 1e-4F);
+    NoTestCount work;
+    return !is_occluded<kEverything>(ours, Ray<float>{start.origin, light.direction, 0}, start.leaving_id,
+                                     Occlusion<float>{light.t, light.primitive_id}, work);
+}
+
+/// The scene with its image's density over the square taken for one over the sphere; the view lives by `texels`.
+SceneView<float> without_sine(SceneView<float> scene, std::vector<EnvironmentTexel<float>>& texels) {
+    constexpr double kPi = std::numbers::pi;
+    const EnvironmentView<float>& environment = scene.environment;
+    texels.assign(environment.texels.begin(), environment.texels.end());
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        const auto row = static_cast<double>(i / static_cast<std::size_t>(environment.width));
+        const double sine = std::sin(kPi * (row + 0.5) / environment.height);
+        texels[i].value[EnvironmentTexel<float>::kDensity] *= static_cast<float>(2 * kPi * kPi * sine / (4 * kPi));
+    }
+    scene.environment.texels = texels;
+    return scene;
+}
+
 }  // namespace
 
 void render_naively(NaiveVariant variant, const Scene& scene, const RenderSettings& settings,
@@ -91,7 +123,10 @@ void render_naively(NaiveVariant variant, const Scene& scene, const RenderSettin
         recursive::IterativeEngine().render(compile<float>(scene, no_coincidence(scene)), settings, framebuffer);
         return;
     }
-    const CompiledScene<float> ours = compile<float>(scene);
+    const CompiledScene<float> compiled = compile<float>(scene);
+    std::vector<EnvironmentTexel<float>> texels;
+    const SceneView<float> ours = variant == NoSine ? without_sine(compiled, texels) : SceneView<float>(compiled);
+    const LightSampling sampling = needed_light_sampling(ours.features, settings);
     const std::array plain{plain_checkers(scene, false), plain_checkers(scene, true)};
     const NaiveSpheres spheres(ours, variant == LeastDistance ? least_distance
                                      : variant == HalfB       ? half_b_distance
@@ -101,22 +136,30 @@ void render_naively(NaiveVariant variant, const Scene& scene, const RenderSettin
         Ray<float> ray = camera_ray<kEverything, float>(ours.camera, static_cast<float>(x), static_cast<float>(y),
                                                         key.pixel, key.sample, seed);
         Vec3<float> throughput = vec3<float>(1, 1, 1);
+        Vec3<float> sum = vec3<float>(0, 0, 0);
+        LightPart<float> lights;
+        lights.sampling = sampling;
+        lights.depth = settings.depth;
         std::int32_t leaving_id = kNoPrimitive;
         for (std::uint32_t step = 0; step < static_cast<std::uint32_t>(settings.depth); ++step) {
+            lights.arriving_density = lights.density;
             const Hit<float> hit = spheres.closest_hit(ray, leaving_id);
             if (hit.primitive_id == kNoPrimitive)
-                return Vec3<float>(throughput.cwiseProduct(sky_radiance<float>(ours.sky, ray.direction)));
+                return Vec3<float>(sum + escaping_radiance<kEverything, float>(ours, ray.direction, throughput,
+                                                                               sampling, lights.arriving_density));
             const bool is_odd = variant == Truncation && is_odd_by_truncation(ours, ray, hit);
-            const Scattered<float> out =
-                scatter<kEverything, float>(variant == Truncation ? plain[is_odd ? 1 : 0] : ours, ray, hit.t,
-                                            hit.primitive_id, throughput, key, step, seed);
-            if (out.is_emitter) return out.throughput;
+            const SceneView<float>& looks = variant == Truncation ? plain[is_odd ? 1 : 0] : ours;
+            const Scattered<float> out = scatter<kEverything, float>(looks, ray, hit.t, hit.primitive_id, throughput,
+                                                                     key, step, seed, 0, false, &lights);
+            if (lights.has_shadow_ray && is_seen(variant, ours, spheres, out.start, lights.light))
+                sum += lights.radiance;
+            if (out.is_emitter) return Vec3<float>(sum + out.throughput);
             if (!out.is_alive) break;
             ray = {out.start.origin, out.direction, ray.time};
             leaving_id = out.start.leaving_id;
             throughput = out.throughput;
         }
-        return vec3<float>(0, 0, 0);
+        return sum;
     };
 #pragma omp parallel num_threads(settings.threads)
     {

@@ -115,6 +115,16 @@ FAILURES = {
     "checker": ("Checker: (int) in place of floor, around the origin",
                 "The naive method rounds towards zero, so the cells on both sides of each axis are one, twice as wide. Ours "
                 "takes the whole number below."),
+    "lamp": ("Lamp: a shadow ray that goes all the way to it",
+             "The naive method asks whether anything is closer than the sampled point. By rounding the lamp itself is, for "
+             "nearly every second ray, and as much of the light is missing. Ours asks whether anything but the lamp is "
+             "met before it."),
+    "shade": ("Shade: a shadow ray that ends at 1 - 1e-4 of its way",
+              "Two ten-thousandths before the blue lamp is a shade, which hides all of it. The naive method's shadow rays end "
+              "before the shade, so that the scene has a light that is not there. Ours ends at the lamp."),
+    "sun": ("Sun: a density without the sine of the angle, 16 degrees from the zenith",
+            "The naive method draws the sun as often as it should, and takes the density over the image for one over "
+            "the sphere: a high sun sends more than twice its light. Ours divides by the texel's solid angle."),
 }
 CURVES = {
     "spheres": ("Far, grazing and huge spheres", "What to see: naive curves climb by the square of the distance."),
