@@ -22,7 +22,7 @@ struct Mesh {
 
     std::vector<std::array<float, 3>> positions;  ///< x, y, z in the scene's unit of length
     std::vector<std::array<float, 3>> normals;    ///< of any length; (0, 0, 0) stands for the geometric normal
-    std::vector<std::array<float, 2>> uv;         ///< of any range; v points up in an image
+    std::vector<std::array<float, 2>> uv;         ///< of any range, as the file has them
     std::vector<Triangle> triangles;              ///< indices of vertices, counter-clockwise seen from the front
 
     [[nodiscard]] std::size_t vertex_count() const { return positions.size(); }

@@ -13,8 +13,9 @@
 ///
 /// In both, a polygon becomes a fan of triangles around its first corner. A file makes a mesh as mesh.h promises, of at
 /// least one triangle, or throws an InputError of one line that names the file, the line (of text) or the byte (of
-/// binary data, counted from 0), and the reason. What a header claims is checked against the file's size before memory
-/// is taken for it. Nothing may follow the last element of a PLY file but white space.
+/// binary data, counted from 0), and the reason: positions, normals and uv that are not finite floats among them. What
+/// a header claims is checked against the file's size before memory is taken for it. Nothing may follow the last
+/// element of a PLY file but white space.
 ///
 /// Memory: the file and the mesh, as long as all faces of a PLY file are triangles. Polygons and OBJ files take up to
 /// as much as the mesh again while it grows, and OBJ files their v, vt and vn and 20 to 28 bytes a vertex.

@@ -22,7 +22,7 @@
 namespace raypool {
 
 /// A word of a file as a message quotes it: printable, and not at length.
-inline std::string quoted(std::string_view word) {
+inline std::string quoted_word(std::string_view word) {
     constexpr std::size_t kLongest = 40;
     return fmt::format("\"{}{}\"", printable(word.substr(0, kLongest)), word.size() > kLongest ? "..." : "");
 }
@@ -113,11 +113,11 @@ class MeshText {
     }
     /// Refuses the word that stands next.
     [[noreturn]] void refuse_value(std::string_view what, std::string_view rule) const {
-        refuse(fmt::format("{} must be {}, got {}", what, rule, quoted(next_word())));
+        refuse(fmt::format("{} must be {}, got {}", what, rule, quoted_word(next_word())));
     }
     /// Refuses words that are left in the line.
     void expect_line_end() {
-        if (!at_line_end()) refuse(fmt::format("the line must end before {}", quoted(next_word())));
+        if (!at_line_end()) refuse(fmt::format("the line must end before {}", quoted_word(next_word())));
     }
 
   private:

@@ -89,7 +89,7 @@ class ObjReader {
         } else if (std::find(kSkippedStatements.begin(), kSkippedStatements.end(), word) != kSkippedStatements.end()) {
             while (!text_.at_line_end()) text_.word();
         } else {
-            text_.refuse(fmt::format("{} is no statement that can be read", quoted(word)));
+            text_.refuse(fmt::format("{} is no statement that can be read", quoted_word(word)));
         }
     }
 

@@ -30,7 +30,7 @@ PlyType take_type(MeshText& text) {
     const auto found = std::find_if(kTypes.begin(), kTypes.end(), [&](const PlyTypeTraits& type) {
         return !word.empty() && (type.name == word || type.old_name == word);
     });
-    if (found == kTypes.end()) text.refuse(fmt::format("{} is no type of a property", quoted(word)));
+    if (found == kTypes.end()) text.refuse(fmt::format("{} is no type of a property", quoted_word(word)));
     return static_cast<PlyType>(found - kTypes.begin());
 }
 
@@ -42,12 +42,12 @@ std::string_view take_name(MeshText& text, std::string_view what) {
 
 PlyFormat take_format(MeshText& text) {
     const std::string_view format = text.word(), version = text.word();
-    if (version != "1.0") text.refuse(fmt::format("the version must be 1.0, got {}", quoted(version)));
+    if (version != "1.0") text.refuse(fmt::format("the version must be 1.0, got {}", quoted_word(version)));
     if (format == "ascii") return PlyFormat::Ascii;
     if (format == "binary_little_endian") return PlyFormat::BinaryLittleEndian;
     if (format == "binary_big_endian") return PlyFormat::BinaryBigEndian;
-    text.refuse(
-        fmt::format("the format must be ascii, binary_little_endian or binary_big_endian, got {}", quoted(format)));
+    text.refuse(fmt::format("the format must be ascii, binary_little_endian or binary_big_endian, got {}",
+                            quoted_word(format)));
 }
 
 bool is_of_mesh(std::string_view element) {
@@ -106,7 +106,7 @@ PlyHeader parse_lines(MeshText& text) {
             text.refuse(
                 fmt::format("a line of the header must begin with format, comment, obj_info, element, property "
                             "or end_header, got {}",
-                            quoted(keyword)));
+                            quoted_word(keyword)));
         }
         text.expect_line_end();
     }
@@ -137,7 +137,7 @@ void check_size(const PlyHeader& header, std::size_t file_size, std::string_view
             throw InputError(
                 fmt::format("{}: {} of element {}, of at least {} bytes each, do not fit into the {} bytes "
                             "after the header",
-                            name, element.count, quoted(element.name), bytes, file_size - header.size));
+                            name, element.count, quoted_word(element.name), bytes, file_size - header.size));
         }
         left -= element.count * bytes;
     }

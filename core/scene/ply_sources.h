@@ -32,7 +32,8 @@ class PlyTextSource {
 
     void begin(const PlyElement& element, std::int64_t /*number*/) {
         text_.skip_white_space();
-        if (text_.at_end()) text_.refuse(fmt::format("the file ends before element {} does", quoted(element.name)));
+        if (text_.at_end())
+            text_.refuse(fmt::format("the file ends before element {} does", quoted_word(element.name)));
     }
     void end() { text_.expect_line_end(); }
 
@@ -46,7 +47,7 @@ class PlyTextSource {
     }
     void skip(const PlyProperty& property, std::int64_t count) {
         for (std::int64_t i = 0; i < count; ++i) {
-            if (text_.word().empty()) text_.refuse(fmt::format("property {} is missing", quoted(property.name)));
+            if (text_.word().empty()) text_.refuse(fmt::format("property {} is missing", quoted_word(property.name)));
         }
     }
     void expect_end() {
@@ -96,12 +97,13 @@ class PlyBinarySource {
         }
     }
     [[noreturn]] void refuse(std::string_view reason) const {
-        throw InputError(fmt::format("{}: byte {}: {} {}: {}", name_, at_ - begin_, quoted(element_), number_, reason));
+        throw InputError(
+            fmt::format("{}: byte {}: {} {}: {}", name_, at_ - begin_, quoted_word(element_), number_, reason));
     }
 
   private:
     const char* take(std::int64_t size, std::string_view what) {
-        if (size > end_ - at_) refuse(fmt::format("the file ends within {}", quoted(what)));
+        if (size > end_ - at_) refuse(fmt::format("the file ends within {}", quoted_word(what)));
         return std::exchange(at_, at_ + size);
     }
     template <class Value>

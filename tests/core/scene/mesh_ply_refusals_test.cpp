@@ -227,10 +227,8 @@ TEST(MeshPlyRefusals, OfNormalsAndUvThatAreNotFinite) {
 
 TEST(MeshPlyRefusals, OfEveryTruncation) {
     for (const std::string& file : {kAsciiSquare, binary_triangle(), binary_triangle(std::endian::big)}) {
-        for (std::size_t size = 0; size < file.size() - 1; ++size) {
-            if (file == kAsciiSquare && size == file.size() - 2) continue;  // a number is no longer whole, or another
-            EXPECT_NE(ply_refusal(file.substr(0, size)), "") << size;
-        }
+        const std::size_t whole = file.size() - (file == kAsciiSquare ? 1 : 0);  // the last line may lack its end
+        for (std::size_t size = 0; size < whole; ++size) EXPECT_NE(ply_refusal(file.substr(0, size)), "") << size;
         EXPECT_EQ(ply_refusal(file), "");
     }
 }
