@@ -8,6 +8,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -62,7 +63,8 @@ Mesh read_mesh(const fs::path& path) {
     const MeshReader read = reader_for(path);
     try {
         const FileBytes file = read_file(path);
-        return read({file.bytes.get(), file.size}, path.string());
+        const std::string_view bytes(file.bytes.get(), file.size);
+        return read(bytes, path.string());
     } catch (const std::bad_alloc&) {
         throw InputError(fmt::format("{}: not enough memory for the file and its mesh", path.string()));
     }

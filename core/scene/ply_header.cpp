@@ -45,9 +45,11 @@ PlyFormat take_format(MeshText& text) {
     if (version != "1.0") text.refuse(fmt::format("the version must be 1.0, got {}", quoted_word(version)));
     if (format == "ascii") return PlyFormat::Ascii;
     if (format == "binary_little_endian") return PlyFormat::BinaryLittleEndian;
-    if (format == "binary_big_endian") return PlyFormat::BinaryBigEndian;
-    text.refuse(fmt::format("the format must be ascii, binary_little_endian or binary_big_endian, got {}",
-                            quoted_word(format)));
+    if (format != "binary_big_endian") {
+        text.refuse(fmt::format("the format must be ascii, binary_little_endian or binary_big_endian, got {}",
+                                quoted_word(format)));
+    }
+    return PlyFormat::BinaryBigEndian;
 }
 
 bool is_of_mesh(std::string_view element) {
