@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/core/scene/mesh_samples.h"
@@ -99,6 +100,16 @@ TEST(MeshObj, UnifiesManyVerticesAsAFileWithFewer) {
     for (std::uint32_t i = 0; i + 2 < kCount; ++i) {
         EXPECT_EQ(mesh.triangles[i], (Triangle{i, i + 1, i + 2}));
     }
+}
+
+TEST(MeshObj, KeepsCornersOfOnePositionApartByTheirNormals) {
+    std::string text = "v 0 0 0\n";
+    constexpr int kCount = 1500;
+    for (int i = 1; i <= kCount; ++i) text += "vn 0 0 " + std::to_string(i) + "\n";
+    for (int i = 1; i <= kCount; i += 3) text += fmt::format("f 1//{} 1//{} 1//{}\n", i, i + 1, i + 2);
+    const Mesh mesh = obj(text + text.substr(text.find('f')));
+    ASSERT_EQ(mesh.vertex_count(), static_cast<std::size_t>(kCount));
+    for (int i = 0; i < kCount; ++i) EXPECT_EQ(mesh.normals[i][2], static_cast<float>(i + 1));
 }
 
 TEST(MeshObj, RefusesWhatIsWrongNamingTheLine) {
