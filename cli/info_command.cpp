@@ -72,6 +72,9 @@ void info(const std::string& name) {
     print("image: {} x {}\n", scene.width, scene.height);
     print("shapes: {} spheres, {} quads, {} planes; {} materials, {} textures\n", scene.spheres.size(),
           scene.quads.size(), scene.planes.size(), scene.materials.size(), scene.textures.size());
+    if (!scene.meshes.empty())
+        print("meshes: {}, of {} triangles and {} vertices\n", scene.meshes.size(), compiled.triangles.size(),
+              compiled.vertices.size());
     print_hidden(scene, coincidence.is_hidden);
     print("features: {}\n", listed(compiled.features));
     const auto code = [&](std::size_t first) {
@@ -95,6 +98,7 @@ void info(const std::string& name) {
           filled_lanes(compiled.planes));
     print_tree("sphere", compiled.sphere_tree);
     print_tree("quad", compiled.quad_tree);
+    print_tree("triangle", compiled.triangle_tree);
     print("pool of a thread: {} records, for trees of {} and a second-level cache of {}\n",
           wavefront::pool_capacity(wavefront::PoolSettings{}, compiled), bytes_text(wavefront::tree_bytes(compiled)),
           bytes_text(second_level_cache()));

@@ -155,6 +155,7 @@ class Tracer {
         if constexpr (splitting == Splitting::On) {
             if (out.is_split) {
                 *reflected = after;
+                reflected->ray.origin = out.reflected_origin;
                 reflected->ray.direction = out.reflected_direction;
                 reflected->throughput = out.reflected_throughput;
                 reflected->step = path_step::reflected_branch(after.step);

@@ -12,11 +12,14 @@
 
 namespace raypool {
 
-/// A built-in scene, or `textures` or `sky_image`, at another width, in its own shape unless a height is given.
+/// A built-in scene, or `textures`, `sky_image` or `solids`, at another width, in its own shape unless a height is
+/// given.
 inline Scene small_scene(const std::string& name, std::int64_t width, std::int64_t height = 0) {
-    const bool has_images = name == "textures" || name == "sky_image";
-    Scene scene =
-        has_images ? read_scene(RAYPOOL_SOURCE_DIR "/scenes/textures/" + name + ".json") : builtin_scene(name);
+    const char* const folder = name == "textures" || name == "sky_image" ? "textures/"
+                               : name == "solids"                        ? "meshes/"
+                                                                         : nullptr;
+    Scene scene = folder == nullptr ? builtin_scene(name)
+                                    : read_scene(RAYPOOL_SOURCE_DIR "/scenes/" + std::string(folder) + name + ".json");
     scene.height = height > 0 ? height : std::max<std::int64_t>(1, scene.height * width / scene.width);
     scene.width = width;
     return scene;

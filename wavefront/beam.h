@@ -80,6 +80,14 @@ class Beam {
     RAYPOOL_INLINE unsigned may_meet(const Block& block, S limit) const {
         if constexpr (requires { block.radius; }) {
             return may_meet<features>(block, raypool::detail::load<Boxes>(block.padded_radius), limit);
+        } else if constexpr (IsTriangles<Block>) {
+            std::array<Vec3<Boxes>, 3> vertex;
+            for (int i = 0; i < 3; ++i) vertex[i] = raypool::detail::load<Boxes>(block.vertex[i]);
+            Vec3<Boxes> low;
+            Vec3<Boxes> high;
+            triangle_box<Boxes>(vertex, low, high);
+            const Interval<Boxes> inside = interval(low, high, limit);
+            return mask_bits(inside.enter <= inside.exit && vertex[0][0] == vertex[0][0]);  // a NaN is an unused lane
         } else {
             const Interval<Boxes> inside = interval(block.low, block.high, limit);
             return mask_bits(inside.enter <= inside.exit);
@@ -167,6 +175,15 @@ RAYPOOL_INLINE void walk_beam(const Tree& tree, const Beam<Wide<ScalarOf<Real>, 
     Entry stack[kTraversalStack<kWidth>];
     Entry* top = stack;
     std::int32_t child = 0;
+    const auto ready = [&] {
+        if constexpr (IsTriangles<typename Tree::Block>) {
+            std::array<Sheared<WideRays<Real>, Real>, kBeamPackets<Real>> all;
+            for (int p = 0; p < packets; ++p) all[p] = ready_for<typename Tree::Block, Real>(rays[p]);
+            return all;
+        } else {
+            return rays;
+        }
+    }();
     S limit = farthest();
     for (;;) {
         if (child >= 0) {
@@ -189,7 +206,7 @@ RAYPOOL_INLINE void walk_beam(const Tree& tree, const Beam<Wide<ScalarOf<Real>, 
                 const int i = std::countr_zero(bits);
                 work.count_primitives(count);
                 for (int p = 0; p < packets; ++p)
-                    is_improved |= any(intersect_lane<features, InBox::Yes, Real>(block, i, rays[p], hit[p]));
+                    is_improved |= any(intersect_lane<features, InBox::Yes, Real>(block, i, ready[p], hit[p]));
             }
             if (is_improved) limit = farthest();
         }
@@ -229,6 +246,8 @@ RAYPOOL_INLINE void closest_hits(const ShapeView<ScalarOf<Real>>& scene, const W
                                     work);
         detail::walk_beam<features, Real>(scene.quad_tree, beam, rays, hit, packets, count, work);
     }
+    if constexpr (features.triangles)
+        detail::walk_beam<features, Real>(scene.triangle_tree, beam, rays, hit, packets, count, work);
     detail::walk_beam<features, Real>(scene.sphere_tree, beam, rays, hit, packets, count, work);
 }
 

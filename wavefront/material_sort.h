@@ -29,7 +29,7 @@ class MaterialSort {
         const auto kind = [&](std::size_t i) -> std::size_t {
             const std::int32_t id = stream.primitive_id()[i];
             if (id < 0) return kKinds - 1;
-            const auto& row = scene.surfaces[static_cast<std::size_t>(id)];
+            const auto& row = scene.surfaces[static_cast<std::size_t>(surface_of<Scalar>(scene, id))];
             const Int<Scalar> code = bits_of<Scalar>(row.value[SurfaceRow<Scalar>::kCode]);
             return static_cast<std::size_t>(SurfaceCode<Int<Scalar>>{code}.material());
         };

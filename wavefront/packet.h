@@ -12,6 +12,7 @@ RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, co
                                 Hit<Real>& hit, Work& work) {
     if (tree.nodes.empty()) return;
     const raypool::detail::TreeBounds<features, Tree> bounds(tree);
+    const auto& ready = ready_for<typename Tree::Block, Real>(rays);
     using S = ScalarOf<Real>;
     constexpr int kWidth = kTreeWidth<S>;
     struct Entry {
@@ -40,7 +41,7 @@ RAYPOOL_INLINE void walk_packet(const Tree& tree, const WideRays<Real>& rays, co
             const auto& block = tree.blocks[static_cast<std::size_t>(~child)];
             for_each_shape(block, [&](int i) {
                 work.count_primitives(std::popcount(mask_bits(is_active)));
-                intersect_lane<features, InBox::Yes, Real>(block, i, rays, hit);
+                intersect_lane<features, InBox::Yes, Real>(block, i, ready, hit);
             });
         }
         if (top == stack) return;
@@ -61,6 +62,8 @@ RAYPOOL_INLINE Hit<Real> closest_hits(const ShapeView<ScalarOf<Real>>& scene, co
         intersect_all<features>(scene.planes, rays, count, hit, work);
         detail::walk_packet<features, Real>(scene.quad_tree, rays, is_active, hit, work);
     }
+    if constexpr (features.triangles)
+        detail::walk_packet<features, Real>(scene.triangle_tree, rays, is_active, hit, work);
     detail::walk_packet<features, Real>(scene.sphere_tree, rays, is_active, hit, work);
     return hit;
 }

@@ -32,7 +32,7 @@ StageSizes stage_sizes(const RenderContext<ScalarOf<Real>>& context, std::size_t
     size.contributions =
         std::max(most_records, StageSizes::kKeptContributions) + kBeamRays + kLanes<Real> + size.shadow_rays;
     size.list = std::max(most_records, size.shadow_rays);
-    size.tree_depth = std::max(scene.sphere_tree.depth, scene.quad_tree.depth);
+    size.tree_depth = std::max({scene.sphere_tree.depth, scene.quad_tree.depth, scene.triangle_tree.depth});
     return size;
 }
 

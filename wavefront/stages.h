@@ -251,6 +251,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         if constexpr (splitting == Splitting::On) {
             const Uint32<Real> reflected = path_step::reflected_branch<Uint32<Real>>(step);
             const unsigned alive_too = mask_bits(out.is_reflected_alive && !is_deepest) & hits;
+            next.ray.origin = out.reflected_origin;
             next.ray.direction = out.reflected_direction;
             next.throughput = out.reflected_throughput;
             next.step = reflected;
@@ -260,6 +261,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
                                           reflected + Uint32<Real>(1U << path_step::kBranchShift), step);
         }
         if (alive == 0) return 0;
+        if constexpr (splitting == Splitting::On) next.ray.origin = out.start.origin;
         next.ray.direction = out.direction;
         next.throughput = out.throughput;
         records.template append<Real>(target, next, alive, end);

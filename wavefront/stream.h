@@ -170,7 +170,8 @@ class StreamWalk {
         for (std::size_t first = 0; first < count; first += kRays) {
             Real row[Row::kColumns];
             load_rows_at<Row::kColumns, Real>(hits_.rows->value, list + first, row);
-            const WideRays<Real> rays = rays_of_rows<Real>(row);
+            const WideRays<Real> loaded = rays_of_rows<Real>(row);
+            const auto& rays = ready_for<Block, Real>(loaded);
             Hit<Real> hit;
             hit.t = row[Row::kDistance];
             hit.primitive_id = Int<Real>(kLargestId);  // a tie with the hit so far is settled below, where it is rare

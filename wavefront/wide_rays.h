@@ -120,6 +120,39 @@ RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const Wid
     return is_closer;
 }
 
+/// The same for a triangle.
+template <Features features, InBox in_box, class Real, IsTriangles Block>
+RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const Sheared<WideRays<Real>, Real>& rays,
+                                         Hit<Real>& hit) {
+    const std::int32_t id = block.id[lane];
+    std::array<Vec3<Real>, 3> vertex;
+    for (int i = 0; i < 3; ++i) vertex[i] = lane_of<Real>(block.vertex[i], lane);
+    const Ray<Real>& ray = rays.ray;
+    const Real t =
+        triangle_distance<Real>(ray.origin, rays.shear, vertex, as_mask<Real>(rays.leaving_id == Int<Real>(id)));
+    Mask<Real> is_closer = closer<Real>(t, id, hit);
+    if (none(is_closer)) return is_closer;
+    Vec3<Real> low;
+    Vec3<Real> high;
+    triangle_box<Real>(vertex, low, high);
+    is_closer = is_closer && is_inside_box<Real>(low, high, ray.origin, rays.inverse, t);
+    hit.t = select(is_closer, t, hit.t);
+    hit.primitive_id = select(is_closer, Int<Real>(id), hit.primitive_id);
+    return is_closer;
+}
+
+/// Rays as the shapes of a tree take them: these, or what is made of them.
+template <class Block, class Real>
+RAYPOOL_INLINE decltype(auto) ready_for(const WideRays<Real>& rays) {
+    if constexpr (IsTriangles<Block>) {
+        return Sheared<WideRays<Real>, Real>{rays, ray_shear<Real>(rays.ray.direction)};
+    } else {
+        return (rays);
+    }
+}
+template <class Block, class Real>
+void ready_for(const WideRays<Real>&&) = delete;  // what is returned would not outlive it
+
 /// Calls visit(lane) for the lanes of a block that hold a shape.
 template <class Block, class Visit>
 RAYPOOL_INLINE void for_each_shape(const Block& block, Visit visit) {

@@ -38,6 +38,16 @@ detail::EndBounds<float> end_bounds(const PlanarBlock<float, 1>& quad, int axis)
     return {{low, low}, {high, high}};
 }
 
+detail::EndBounds<float> end_bounds(const TriangleBlock<float, 1>& triangle, int axis) {
+    std::array<Vec3<float>, 3> vertex;
+    for (int i = 0; i < 3; ++i)
+        vertex[i] = vec3<float>(triangle.vertex[i][0][0], triangle.vertex[i][1][0], triangle.vertex[i][2][0]);
+    Vec3<float> low;
+    Vec3<float> high;
+    triangle_box<float>(vertex, low, high);
+    return {{low[axis], low[axis]}, {high[axis], high[axis]}};
+}
+
 template <class Block>
 float greatest_coordinate(const Shapes<Block>& shapes) {
     float reach = 0;
@@ -68,15 +78,17 @@ EmbreeScene::EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
     add(scene.sphere_tree.blocks, spheres_);
     add(scene.quad_tree.blocks, quads_);
+    add(scene.triangle_tree.blocks, triangles_);
     // Embree 3 has no robust box test for user geometries, whatever the flags of a scene. The one that it has takes
     // products with the coordinates of a ray's origin, whose rounding is as if a box moved by an ulp of them; a box
     // that moves has five more (node_motion.h). So boxes leave room for both, of whatever rays start on but planes and
     // large spheres.
-    const float reach = std::max(
-        {scene.camera.origin.cwiseAbs().maxCoeff(), greatest_coordinate(spheres_), greatest_coordinate(quads_)});
-    spheres_.room = quads_.room = 8 * std::numeric_limits<float>::epsilon() * reach;
+    const float reach = std::max({scene.camera.origin.cwiseAbs().maxCoeff(), greatest_coordinate(spheres_),
+                                  greatest_coordinate(quads_), greatest_coordinate(triangles_)});
+    spheres_.room = quads_.room = triangles_.room = 8 * std::numeric_limits<float>::epsilon() * reach;
     attach(spheres_, scene.features.motion, functions.sphere);
     attach(quads_, false, functions.quad);
+    attach(triangles_, false, functions.triangle);
     rtcCommitScene(scene_.get());
     if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree refused the scene");
 }

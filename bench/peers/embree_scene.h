@@ -47,7 +47,7 @@ struct Query {
     Hit<Real> light{};  ///< of shadow rays: what they are to reach
 };
 
-/// Spheres or quads, each a block by itself, so that a test reads a line or two of the cache.
+/// Spheres, quads or triangles, each a block by itself, so that a test reads a line or two of the cache.
 template <class Block>
 struct Shapes {
     std::vector<Block> blocks;
@@ -62,10 +62,12 @@ struct ShapeFunctions {
     };
     OfKind sphere;
     OfKind quad;
+    OfKind triangle;
 
     template <Features features, class Real>
     static ShapeFunctions make() {
-        return {of_kind<features, Real, SphereBlock<float, 1>>(), of_kind<features, Real, PlanarBlock<float, 1>>()};
+        return {of_kind<features, Real, SphereBlock<float, 1>>(), of_kind<features, Real, PlanarBlock<float, 1>>(),
+                of_kind<features, Real, TriangleBlock<float, 1>>()};
     }
 
   private:
@@ -86,7 +88,7 @@ struct ShapeFunctions {
         }
         const Mask<Real> is_closer = wavefront::intersect_lane<features, InBox::Yes, Real>(
             static_cast<const Shapes<Block>*>(args->geometryUserPtr)->blocks[args->primID], 0,
-            reinterpret_cast<const Query<Real>*>(args->context)->rays, hit);
+            wavefront::ready_for<Block, Real>(reinterpret_cast<const Query<Real>*>(args->context)->rays), hit);
         if (none(is_closer)) return;
         set(rayhit.ray.tfar, select(is_closer, hit.t, t));
         set(rayhit.hit.primID, hit.primitive_id);
@@ -104,7 +106,8 @@ struct ShapeFunctions {
             const Int<Real> valid(args->valid, stdx::element_aligned);
             hit.t = select(as_mask<Real>(valid != Int<Real>(0)), hit.t, Real(0));
         }
-        const Mask<Real> is_before = wavefront::intersect_lane<features, InBox::Yes, Real>(shape, 0, query.rays, hit) &&
+        const Mask<Real> is_before = wavefront::intersect_lane<features, InBox::Yes, Real>(
+                                         shape, 0, wavefront::ready_for<Block, Real>(query.rays), hit) &&
                                      as_mask<Real>(query.light.primitive_id != Int<Real>(shape.id[0]));
         if (none(is_before)) return;
         set(ray.tfar, select(is_before, Real(-kInfinity<float>), get<Real>(ray.tfar)));
@@ -175,6 +178,7 @@ class EmbreeScene {
 
     Shapes<SphereBlock<float, 1>> spheres_;
     Shapes<PlanarBlock<float, 1>> quads_;
+    Shapes<TriangleBlock<float, 1>> triangles_;
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release<rtcReleaseDevice>> device_;
     std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>> scene_;
 };

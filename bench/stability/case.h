@@ -75,6 +75,7 @@ CaseMethods planar_cases();
 CaseMethods light_cases();
 CaseMethods environment_cases();
 CaseMethods environment_direction_cases();
+CaseMethods mesh_cases();
 CaseMethods image_cases();
 
 }  // namespace raypool::stability

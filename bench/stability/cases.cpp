@@ -16,7 +16,7 @@ std::map<std::string, std::vector<Method>> all_methods() {
     for (const auto& family :
          {sphere_cases(), leaving_cases(), coincidence_cases(), box_cases(), motion_cases(), scattering_cases(),
           glass_cases(), path_cases(), sum_cases(), random_cases(), texture_cases(), size_cases(), planar_cases(),
-          light_cases(), environment_cases(), environment_direction_cases(), image_cases()})
+          light_cases(), environment_cases(), environment_direction_cases(), mesh_cases(), image_cases()})
         for (const auto& one : family) {
             const bool is_first = all.insert(one).second;
             RAYPOOL_CHECK(is_first, "a case of stability has one list of methods");

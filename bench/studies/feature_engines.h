@@ -30,7 +30,8 @@ inline constexpr auto kFeatureSets = [] {
         // Every member is written, the false ones too: g++ 12 leaves those that were not out of the symbols of the
         // templates, so that the functions of different sets get one name, and the linker keeps one of them.
         sets[i] = {kFeatureNames[i].name,
-                   {i == 0, i == 1, i == 2, i == 3 || i == 4, i == 4, i == 5, i == 6, i == 7, i == 8, i == 9, i == 10}};
+                   {i == 0, i == 1, i == 2 || i == 3, i == 3, i == 4 || i == 5, i == 5, i == 6, i == 7, i == 8, i == 9,
+                    i == 10, i == 11}};
     }
     sets.back() = {kControl, {.fuzz = true}};
     return sets;

@@ -31,15 +31,23 @@ constexpr const char* kAutomatic = "automatic";
 constexpr const char* kCounted = "cache misses";
 constexpr const char* kLists = "lists";
 
-/// What scenes/generate knows how to strew.
-constexpr const char* kSceneKinds[] = {"spheres", "quads", "cluster"};
+/// What the script scenes/generate strews, and scenes/generate_mesh, whose shapes are triangles.
+constexpr const char* kStrewnKinds[] = {"spheres", "quads", "cluster"};
+constexpr const char* kMeshKinds[] = {"field", "room", "terrain", "blob", "needles"};
 
-/// A scene of any number of shapes that scenes/generate wrote, which goes when this does. Needs python3; throws
+bool is_mesh(const std::string& kind) {
+    return std::find(std::begin(kMeshKinds), std::end(kMeshKinds), kind) != std::end(kMeshKinds);
+}
+
+/// A scene of any number of shapes that a script wrote, which goes when this does. Needs python3; throws
 /// std::runtime_error where the script fails.
 class GeneratedScene {
   public:
     GeneratedScene(const std::string& kind, std::int64_t shapes) : name_(fmt::format("{} {}", shapes, kind)) {
-        const std::string script = own_script(RAYPOOL_INSTALLED_SCENES "/generate", RAYPOOL_SOURCE_SCENES "/generate");
+        const std::string script =
+            is_mesh(kind)
+                ? own_script(RAYPOOL_INSTALLED_SCENES "/generate_mesh", RAYPOOL_SOURCE_SCENES "/generate_mesh")
+                : own_script(RAYPOOL_INSTALLED_SCENES "/generate", RAYPOOL_SOURCE_SCENES "/generate");
         if (run_process({kPython, "-B", script, std::to_string(shapes), kind, "-o", path().string()}) != 0)
             throw std::runtime_error(fmt::format("{} could not make {}", script, name_));
     }
@@ -141,6 +149,7 @@ Rows cachegrind_rows(const SizedRender& render) {
                                            fmt::format("--spp={}", spp),
                                            fmt::format("--depth={}", render.settings.depth),
                                            fmt::format("--seed={}", render.settings.seed),
+                                           "--light-sampling=" + to_string(render.settings.light_sampling),
                                            "--threads=1",
                                            pool ? "--engine=wavefront" : "--engine=recursive"};
         if (pool && pool->capacity > 0) arguments.push_back(fmt::format("--pool-rays={}", pool->capacity));
@@ -177,9 +186,16 @@ Rows list_rows(const SizedRender& render) {
     return rows;
 }
 
-std::vector<std::int64_t> sizes(bool is_quick) {
+std::vector<std::string> kinds(bool is_quick) {
+    std::vector<std::string> all(std::begin(kStrewnKinds), std::end(kStrewnKinds));
+    all.insert(all.end(), std::begin(kMeshKinds), is_quick ? std::begin(kMeshKinds) + 1 : std::end(kMeshKinds));
+    return all;
+}
+std::vector<std::int64_t> sizes(const std::string& kind, bool is_quick) {
     if (is_quick) return {100, 1000, 10'000};
-    return {100, 1000, 10'000, 100'000, 1'000'000};
+    std::vector<std::int64_t> all{100, 1000, 10'000, 100'000, 1'000'000};
+    if (is_mesh(kind)) all.push_back(10'000'000);
+    return all;
 }
 std::vector<std::int64_t> depths(const StudyOptions& options) {
     if (options.depth != 0) return {options.depth};
@@ -209,8 +225,10 @@ std::vector<Case> scene_size_cases(const StudyOptions& options) {
     const bool has_cachegrind = !has_counters && !options.is_quick && cachegrind_command().why.empty();
 
     std::vector<Case> cases;
-    for (const char* kind : kSceneKinds) {
-        for (const std::int64_t shapes : sizes(options.is_quick)) {
+    for (const std::string& kind : kinds(options.is_quick)) {
+        // The rooms around meshes have a lamp, which would hardly be met by chance.
+        settings.light_sampling = is_mesh(kind) ? LightSampling::Mis : LightSampling::None;
+        for (const std::int64_t shapes : sizes(kind, options.is_quick)) {
             const auto scene = std::make_shared<SizedScene>(kind, shapes, width);
             for (const std::int64_t depth : depths(options)) {
                 settings.depth = static_cast<std::int32_t>(depth);
@@ -247,8 +265,9 @@ Study scene_size_study() {
     return {.name = "scene-size",
             .question = "At which size of scene does a pool beat recursion, and how many records must it hold?",
             .columns = render_columns(
-                {{"kind", ColumnType::Text, "what scenes/generate strewed: spheres, quads or a cluster"},
-                 {"shapes", ColumnType::Count, "how many"},
+                {{"kind", ColumnType::Text,
+                  "what was made: spheres, quads or a cluster by scenes/generate, a mesh by scenes/generate_mesh"},
+                 {"shapes", ColumnType::Count, "how many; of a mesh about as many triangles"},
                  {"depth", ColumnType::Count, "most segments of a path; 1: camera rays alone"},
                  {"way", ColumnType::Text, "recursion, a capacity, automatic; cache misses or lists of one of these"},
                  {"capacity", ColumnType::Count, "records of the pool of each thread"},

@@ -31,6 +31,7 @@ double dimmest_light(const Scene& scene) {
     add_shapes(scene.spheres);
     add_shapes(scene.quads);
     add_shapes(scene.planes);
+    add_shapes(scene.meshes);
     return least < std::numeric_limits<double>::infinity() ? least : 0;
 }
 

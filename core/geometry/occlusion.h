@@ -26,6 +26,7 @@ template <Features features, class Real, class Block, class Work>
 RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tree, const SpreadRay<Real>& ray,
                          Occlusion<ScalarOf<Real>>& light, Work& work, std::int32_t child = 0) {
     if (tree.nodes.empty()) return;
+    const auto& ready = ready_for<Block, Real>(ray);
     const TreeBounds<features, TreeView<Block, ScalarOf<Real>, kLanes<Real>>> bounds(tree);
     std::int32_t stack[kTraversalStack<kLanes<Real>>];
     std::int32_t* top = stack;
@@ -35,7 +36,7 @@ RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tr
         if (child < 0) {
             const Block& block = tree.blocks[~child];
             work.count(block);
-            intersect_block<features, InBox::Yes, Real>(block, ray, light);
+            intersect_block<features, InBox::Yes, Real>(block, ready, light);
             continue;
         }
         const auto index = static_cast<std::size_t>(child);
@@ -61,6 +62,9 @@ template <Features features, class Scalar, class Work>
     detail::test_untreed<features, Real>(scene, spread, light, work);
     if constexpr (features.planar) {
         if (!light.is_hidden) detail::walk<features, Real>(scene.quad_tree, spread, light, work);
+    }
+    if constexpr (features.triangles) {
+        if (!light.is_hidden) detail::walk<features, Real>(scene.triangle_tree, spread, light, work);
     }
     if (!light.is_hidden) detail::walk<features, Real>(scene.sphere_tree, spread, light, work);
     return light.is_hidden;

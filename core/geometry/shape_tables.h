@@ -1,4 +1,5 @@
-/// The shapes of a scene as traversal reads them: blocks of spheres, quads and planes, and trees over blocks.
+/// The shapes of a scene as traversal reads them: blocks of spheres, quads, planes and triangles, and trees over
+/// blocks.
 ///
 /// Tables own their memory; a view points into them, and is all that kernels read. A view is a plain value: it may be
 /// copied to where pointers mean something else. Tables are immutable once they are made, so threads share them.
@@ -39,6 +40,14 @@ struct alignas(64) PlanarBlock {
     std::int32_t group[lanes];  ///< what a ray leaves that leaves the shape: the id of the shapes in its plane
 };
 
+/// Up to `lanes` triangles. An unused lane has NaN vertices and no id.
+template <class Scalar, int lanes>
+struct alignas(64) TriangleBlock {
+    static constexpr int kLanes = lanes;
+    Scalar vertex[3][3][lanes];  ///< by vertex, then by axis
+    std::int32_t id[lanes];
+};
+
 /// A tree whose leaf i is block i.
 template <class Block, class Scalar, int width>
 struct BlockTree {
@@ -55,8 +64,9 @@ template <class Scalar>
 inline constexpr int kTreeWidth = sizeof(Scalar) == 4 ? 8 : kRegisterBytes / 8;
 
 /// A BlockTree, seen.
-template <class Block, class Scalar, int width>
+template <class BlockType, class Scalar, int width>
 struct TreeView {
+    using Block = BlockType;
     std::span<const WideNode<Scalar, width>> nodes;
     std::span<const NodeMotion<Scalar, width>> motion[3];
     std::span<const Block> blocks;
@@ -79,6 +89,7 @@ struct ShapeTables {
     std::vector<PlanarBlock<Scalar, kWidth>> planes;
     BlockTree<SphereBlock<Scalar, kWidth>, Scalar, kWidth> sphere_tree;
     BlockTree<PlanarBlock<Scalar, kWidth>, Scalar, kWidth> quad_tree;
+    BlockTree<TriangleBlock<Scalar, kWidth>, Scalar, kWidth> triangle_tree;
 
     /// Calls visit(std::vector&) for every table.
     template <class Self, class Visit>
@@ -92,6 +103,7 @@ struct ShapeTables {
         };
         visit_tree(self.sphere_tree);
         visit_tree(self.quad_tree);
+        visit_tree(self.triangle_tree);
     }
 };
 
@@ -104,13 +116,15 @@ struct ShapeView {
     std::span<const PlanarBlock<Scalar, kWidth>> planes;
     TreeView<SphereBlock<Scalar, kWidth>, Scalar, kWidth> sphere_tree;
     TreeView<PlanarBlock<Scalar, kWidth>, Scalar, kWidth> quad_tree;
+    TreeView<TriangleBlock<Scalar, kWidth>, Scalar, kWidth> triangle_tree;
 
     ShapeView() = default;
     explicit ShapeView(const ShapeTables<Scalar>& tables)
         : large_spheres(tables.large_spheres),
           planes(tables.planes),
           sphere_tree(tables.sphere_tree),
-          quad_tree(tables.quad_tree) {}
+          quad_tree(tables.quad_tree),
+          triangle_tree(tables.triangle_tree) {}
 };
 
 }  // namespace raypool

@@ -8,39 +8,11 @@
 
 #include "core/geometry/shape_tables.h"
 #include "core/geometry/shapes.h"
+#include "core/geometry/test_count.h"
+#include "core/geometry/triangles.h"
 #include "core/scene/features.h"
 
 namespace raypool {
-
-struct TestCount {
-    std::int64_t box_tests = 0;        ///< children of tree nodes, one by one
-    std::int64_t primitive_tests = 0;  ///< shapes, one by one
-
-    template <class Scalar, int width>
-    void count(const WideNode<Scalar, width>& node) {
-        for (int i = 0; i < width; ++i) box_tests += node.bounds[0][0][i] <= node.bounds[0][1][i] ? 1 : 0;
-    }
-    template <class Block>
-    void count(const Block& block) {
-        for (const std::int32_t id : block.id) primitive_tests += id != kNoPrimitive ? 1 : 0;
-    }
-    /// Child `lane` of a node, for the rays set in `rays`.
-    template <class Scalar, int width>
-    void count_boxes(const WideNode<Scalar, width>& node, int lane, unsigned rays) {
-        if (node.bounds[0][0][lane] <= node.bounds[0][1][lane]) box_tests += std::popcount(rays);
-    }
-    void count_primitives(int rays) { primitive_tests += rays; }
-    void begin_segment() {}  ///< called by the per-pixel tracer; a log of segments overrides it
-};
-
-struct NoTestCount {
-    static constexpr std::int64_t box_tests = 0;
-    static constexpr std::int64_t primitive_tests = 0;
-    RAYPOOL_INLINE void count(const auto&) {}
-    RAYPOOL_INLINE void count_boxes(const auto&, int, unsigned) {}
-    RAYPOOL_INLINE void count_primitives(int) {}
-    RAYPOOL_INLINE void begin_segment() {}
-};
 
 /// The deepest tree's: a node takes itself from the stack and puts up to `width` children there, so each level of nodes
 /// leaves width - 1 behind. A level of a wide tree stands for one or more of the binary one.
@@ -70,6 +42,16 @@ struct SpreadRay {
             sign[i] = scalar.is_negative[i] ? 1 : 0;
         }
     }
+};
+
+/// A ray or rays as the shapes of a block take them: with the shear that triangles need.
+template <class Rays, class Real>
+struct Sheared : Rays {
+    RayShear<Real> shear;
+};
+template <class Block>
+concept IsTriangles = requires(Block block) {
+    block.vertex;
 };
 
 /// Whether a primitive's box is in a tree and so limits its hits.
@@ -194,6 +176,35 @@ RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& r
     }
 }
 
+template <Features features, InBox in_box, class Real, IsTriangles Block, class Found>
+RAYPOOL_INLINE void intersect_block(const Block& block, const Sheared<SpreadRay<Real>, Real>& ray, Found& hit) {
+    std::array<Vec3<Real>, 3> vertex;
+    for (int i = 0; i < 3; ++i) vertex[i] = load<Real>(block.vertex[i]);
+    const Real t = triangle_distance<Real>(ray.origin, ray.shear, vertex, is_leaving<Real>(block.id, ray.leaving_id));
+    const Mask<Real> is_closer = t <= Real(hit.t) && t < Real(kInfinity<Real>);
+    if (none(is_closer)) return;
+    Vec3<Real> low;
+    Vec3<Real> high;
+    triangle_box<Real>(vertex, low, high);
+    const Mask<Real> is_inside = is_inside_box<Real>(low, high, ray.origin, ray.inverse, t);
+    keep_closest<Real>(t, block.id, mask_bits(is_closer && is_inside), hit);
+}
+
+/// A ray as the shapes of a tree take it.
+template <class Block, class Real>
+RAYPOOL_INLINE decltype(auto) ready_for(const SpreadRay<Real>& ray) {
+    if constexpr (IsTriangles<Block>) {
+        const auto first = [](const Vec3<Real>& v) {
+            return vec3<ScalarOf<Real>>(lane(v[0], 0), lane(v[1], 0), lane(v[2], 0));
+        };
+        const RayShear<ScalarOf<Real>> shear = ray_shear<ScalarOf<Real>>(first(ray.direction));
+        return Sheared<SpreadRay<Real>, Real>{
+            ray, {broadcast<Real>(shear.x), broadcast<Real>(shear.y), broadcast<Real>(shear.z)}};
+    } else {
+        return (ray);
+    }
+}
+
 /// The shapes that are in no tree.
 template <Features features, class Real, class Found, class Work>
 RAYPOOL_INLINE void test_untreed(const ShapeView<ScalarOf<Real>>& scene, const SpreadRay<Real>& ray, Found& hit,
@@ -214,6 +225,7 @@ RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tr
                          Hit<ScalarOf<Real>>& hit, Work& work, std::int32_t child = 0) {
     using S = ScalarOf<Real>;
     if (tree.nodes.empty()) return;
+    const auto& ready = ready_for<Block, Real>(ray);
     const TreeBounds<features, TreeView<Block, S, kLanes<Real>>> bounds(tree);
     struct Entry {
         S enter;
@@ -245,7 +257,7 @@ RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tr
         } else {
             const Block& block = tree.blocks[~child];
             work.count(block);
-            intersect_block<features, InBox::Yes, Real>(block, ray, hit);
+            intersect_block<features, InBox::Yes, Real>(block, ready, hit);
         }
         do {
             if (top == stack) return;
@@ -266,6 +278,7 @@ template <Features features, class Scalar, class Work>
     Hit<Scalar> hit;
     detail::test_untreed<features, Real>(scene, spread, hit, work);
     if constexpr (features.planar) detail::walk<features, Real>(scene.quad_tree, spread, hit, work);
+    if constexpr (features.triangles) detail::walk<features, Real>(scene.triangle_tree, spread, hit, work);
     detail::walk<features, Real>(scene.sphere_tree, spread, hit, work);
     return hit;
 }

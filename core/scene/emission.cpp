@@ -36,6 +36,8 @@ double enclosing_radius(const Scene& scene) {
         for (const Vector3d& corner : {quad.corner, Vector3d(quad.corner + quad.edge_u)})
             box.extend(corner).extend(Vector3d(corner + quad.edge_v));
     }
+    for (const MeshShape& shape : scene.meshes)
+        for (const auto& position : shape.mesh->positions) box.extend(shape.placed(position));
     return box.isEmpty() ? 1 : box.diagonal().norm() / 2;
 }
 

@@ -9,7 +9,7 @@ namespace {
 Features texture_features(const Texture& texture) {
     Features features;
     features.checker = texture.kind == Texture::Kind::Checker3d;
-    features.uv = texture.kind == Texture::Kind::CheckerUv || texture.kind == Texture::Kind::Image;
+    features.uv = texture.needs_uv();
     return features;
 }
 
@@ -48,7 +48,9 @@ Features scene_features(const Scene& scene) {
     for (const Plane& plane : scene.planes) add_material(plane.material_id);
     features.environment = scene.background.image != nullptr;
     features.lights |= power.of(scene.background) > 0;
-    features.planar = !scene.quads.empty() || !scene.planes.empty();
+    for (const MeshShape& mesh : scene.meshes) add_material(mesh.material_id);
+    features.triangles = !scene.meshes.empty();
+    features.planar = !scene.quads.empty() || !scene.planes.empty() || features.triangles;
     features.defocus = scene.camera.defocus_angle_degrees > 0;
     return features;
 }

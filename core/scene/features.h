@@ -17,7 +17,8 @@ namespace raypool {
 struct Features {
     bool motion = false;       ///< a sphere moves while the shutter is open: rays carry a time
     bool defocus = false;      ///< the lens has an area
-    bool planar = false;       ///< quads or planes
+    bool planar = false;       ///< quads, planes or triangles
+    bool triangles = false;    ///< meshes
     bool metal = false;        ///< mirrors
     bool fuzz = false;         ///< mirrors that are not perfect
     bool dielectric = false;   ///< glass
@@ -35,9 +36,10 @@ struct FeatureName {
     const char* name;
     bool Features::*member;
 };
-inline constexpr std::array<FeatureName, 11> kFeatureNames{{{"motion", &Features::motion},
+inline constexpr std::array<FeatureName, 12> kFeatureNames{{{"motion", &Features::motion},
                                                             {"defocus", &Features::defocus},
                                                             {"planar", &Features::planar},
+                                                            {"triangles", &Features::triangles},
                                                             {"metal", &Features::metal},
                                                             {"fuzz", &Features::fuzz},
                                                             {"dielectric", &Features::dielectric},
@@ -68,10 +70,10 @@ constexpr std::size_t ray_record_bytes(const Features& features, std::size_t sca
 /// The names of the features needed, in the order of kFeatureNames.
 std::vector<std::string> feature_names(const Features& features);
 
-inline constexpr Features kEverything{true, true, true, true, true, true, true, true, true, true, true};
+inline constexpr Features kEverything{true, true, true, true, true, true, true, true, true, true, true, true};
 
 /// All but light sampling.
-inline constexpr Features kAllButLights{true, true, true, true, true, true, true, true, true, false, true};
+inline constexpr Features kAllButLights{true, true, true, true, true, true, true, true, true, true, false, true};
 
 /// The sets of features that the engines are compiled for, smallest first. A scene runs on the first that covers it,
 /// counted from kFirstCompiledFeatures on.

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -13,8 +14,10 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 #include "core/image/image.h"
+#include "core/scene/mesh.h"
 
 namespace raypool {
 
@@ -67,6 +70,7 @@ struct Texture {
 
     /// No channel is above it anywhere.
     [[nodiscard]] double brightest() const { return image ? 1 : std::max(even.maxCoeff(), odd.maxCoeff()); }
+    [[nodiscard]] bool needs_uv() const { return kind == Kind::CheckerUv || kind == Kind::Image; }
 };
 
 struct Material {
@@ -107,7 +111,22 @@ struct Plane {
     std::int64_t quads_before = std::numeric_limits<std::int64_t>::max();
 };
 
-/// A primitive's id counts through all shapes in this order: spheres, quads, planes.
+/// A mesh of triangles, placed. A triangle's outward side is the one from which its vertices are seen counterclockwise.
+struct MeshShape {
+    std::shared_ptr<const Mesh> mesh;  ///< shared, since scenes are copied
+    /// Takes a vertex to its place: a matrix, not singular, and in the last column what is added.
+    Eigen::Matrix<double, 3, 4> transform = Eigen::Matrix<double, 3, 4>::Identity();
+    std::int32_t material_id = 0;
+
+    [[nodiscard]] Vector3d placed(const std::array<float, 3>& position) const {
+        const Vector3d p(position[0], position[1], position[2]);
+        return transform.leftCols<3>() * p + transform.col(3);
+    }
+    /// Then the order of vertices is seen the other way round.
+    [[nodiscard]] bool is_mirrored() const { return transform.leftCols<3>().determinant() < 0; }
+};
+
+/// A primitive's id counts through all shapes in this order: spheres, quads, planes, the triangles of all meshes.
 struct Scene {
     std::string name;          ///< file name without folder and extension, as UTF-8
     std::string description;   ///< what the scene is for and where it comes from; not empty
@@ -120,6 +139,7 @@ struct Scene {
     std::vector<Sphere> spheres;
     std::vector<Quad> quads;
     std::vector<Plane> planes;
+    std::vector<MeshShape> meshes;
 };
 
 }  // namespace raypool

@@ -66,6 +66,16 @@ class Hasher {
         const auto& [point, normal, material_id, quads_before] = plane;
         add_all(point, normal, material_id, quads_before);
     }
+    template <class T, std::size_t count>
+    void add(const std::array<T, count>& elements) {
+        for (const T& element : elements) add(element);
+    }
+    void add(const MeshShape& shape) {
+        const auto& [mesh, transform, material_id] = shape;
+        const auto& [positions, normals, uv, triangles] = *mesh;
+        add_all(positions, normals, uv, triangles, material_id);
+        for (int i = 0; i < 12; ++i) add(transform(i / 4, i % 4));
+    }
     template <class T>
     void add(const std::vector<T>& elements) {
         add(elements.size());
@@ -81,10 +91,11 @@ class Hasher {
 }  // namespace
 
 std::string scene_hash(const Scene& scene) {
-    const auto& [name, description, width, height, camera, background, textures, materials, spheres, quads, planes] =
-        scene;
+    const auto& [name, description, width, height, camera, background, textures, materials, spheres, quads, planes,
+                 meshes] = scene;
     Hasher hasher;
     hasher.add_all(width, height, camera, background, textures, materials, spheres, quads, planes);
+    if (!meshes.empty()) hasher.add_all(meshes);
     return hasher.digest();
 }
 

@@ -11,7 +11,7 @@ namespace raypool {
 
 namespace fs = std::filesystem;
 
-Image SceneImages::read(const JsonCursor& place, Read read_file, const char* what) {
+fs::path SceneImages::path(const JsonCursor& place) const {
     const fs::path relative = place.text();
     const bool goes_up = std::find(relative.begin(), relative.end(), "..") != relative.end();
     if (relative.is_absolute() || goes_up) place.refuse("be a path below the scene's folder, without \"..\"");
@@ -24,9 +24,13 @@ Image SceneImages::read(const JsonCursor& place, Read read_file, const char* wha
     if (root_end != root.end()) {
         place.refuse("stay below the scene's folder", "a link to " + file.string());
     }
+    return folder_ / relative;
+}
 
+Image SceneImages::read(const JsonCursor& place, Read read_file, const char* what) {
+    const fs::path file = path(place);
     try {
-        Image image = read_file(folder_ / relative, texels_left_);
+        Image image = read_file(file, texels_left_);
         texels_left_ -= image.width * image.height;
         return image;
     } catch (const InputError& broken) {

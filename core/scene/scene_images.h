@@ -1,4 +1,4 @@
-/// The image files that a scene names: textures, and the image around it. Called by scene_parser.cpp alone.
+/// The files that a scene names: textures, the image around it, and meshes. Called by scene_parser.cpp alone.
 #pragma once
 
 #include <filesystem>
@@ -20,6 +20,9 @@ class SceneImages {
     std::shared_ptr<const Image> texture(const JsonCursor& place);
     /// An EXR or PFM file, twice as wide as high, of values that are finite and not negative.
     std::shared_ptr<const Image> environment(const JsonCursor& place);
+
+    /// Where a file lies that the scene names.
+    [[nodiscard]] std::filesystem::path path(const JsonCursor& place) const;
 
   private:
     using Read = Image (*)(const std::filesystem::path&, std::int64_t max_texels);

@@ -12,7 +12,10 @@
 #include "core/base/error.h"
 #include "core/base/json_parser.h"
 #include "core/base/text.h"
+#include "core/scene/camera_parser.h"
 #include "core/scene/json_cursor.h"
+#include "core/scene/lengths.h"
+#include "core/scene/mesh_parser.h"
 #include "core/scene/scene_images.h"
 
 namespace raypool {
@@ -20,69 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Lengths within these limits can be squared, and three of them multiplied, within the range of float.
-constexpr double kMaxLength = 1e12;
-constexpr double kMinLength = 1e-12;
 constexpr double kMaxRadiance = 1e6;
-constexpr double kMinSine = 1e-6;  // of the angle between directions that must not be parallel
-
-// Beyond these angles a tangent of half of them times kMaxLength could leave float.
-constexpr double kMinFovDegrees = 0.001;
-constexpr double kMaxAngleDegrees = 179.9;
 constexpr double kMaxRotationDegrees = 360;
-
-bool are_parallel(const Vector3d& a, const Vector3d& b) {
-    return a.normalized().cross(b.normalized()).norm() < kMinSine;
-}
-
-Vector3d position(const JsonCursor& place) {
-    return place.vector3(-kMaxLength, kMaxLength);
-}
-
-Vector3d direction(const JsonCursor& place) {
-    Vector3d value = position(place);
-    if (value.norm() < kMinLength) place.refuse("not be a zero vector", fmt::format("a length of {:g}", value.norm()));
-    return value;
-}
-
-CameraDescription camera(JsonObject object) {
-    CameraDescription camera;
-    camera.look_from = position(object.required("look_from"));
-    const JsonCursor look_at = object.required("look_at");
-    camera.look_at = position(look_at);
-    const Vector3d view = camera.look_at - camera.look_from;
-    if (view.norm() < kMinLength) look_at.refuse("differ from look_from", "the same point");
-
-    if (const auto up = object.optional("up")) camera.up = direction(*up);
-    if (are_parallel(camera.up, view)) {
-        object.place().refuse("have an up that is not parallel to the line from look_from to look_at",
-                              fmt::format("up [{:g}, {:g}, {:g}]", camera.up.x(), camera.up.y(), camera.up.z()));
-    }
-
-    if (const auto fov = object.optional("vertical_fov_degrees")) {
-        camera.vertical_fov_degrees = fov->number(kMinFovDegrees, kMaxAngleDegrees);
-    }
-    if (const auto angle = object.optional("defocus_angle_degrees")) {
-        camera.defocus_angle_degrees = angle->number(0, kMaxAngleDegrees);
-    }
-    if (const auto distance = object.optional("focus_distance")) {
-        camera.focus_distance = distance->number(kMinLength, kMaxLength);
-    } else if (camera.defocus_angle_degrees > 0) {
-        object.place().refuse("have the key \"focus_distance\" when defocus_angle_degrees is above 0", "none");
-    }
-
-    if (const auto shutter = object.optional("shutter")) {
-        if (shutter->size() != 2) shutter->refuse("be an array of 2 numbers: open, close");
-        camera.shutter_open = shutter->item(0).number(0, 1);
-        camera.shutter_close = shutter->item(1).number(0, 1);
-        if (camera.shutter_close < camera.shutter_open) {
-            shutter->refuse("open before it closes",
-                            fmt::format("[{:g}, {:g}]", camera.shutter_open, camera.shutter_close));
-        }
-    }
-    object.refuse_unknown_keys();
-    return camera;
-}
 
 /// Refuses what is multiplied by a factor beyond the range of radiance.
 void check_brightest(const JsonCursor& place, double brightest) {
@@ -155,7 +97,7 @@ class SceneReader {
         if (const auto schema = object.optional("$schema")) schema->text();  // for editors
         scene_.description = object.required("description").text();
         if (const auto image = object.optional("image")) read_image_size(JsonObject(*image));
-        scene_.camera = camera(JsonObject(object.required("camera")));
+        scene_.camera = parse_camera(JsonObject(object.required("camera")));
         scene_.background = background(object.required("background"), images_);
         if (const auto textures = object.optional("textures")) {
             for (const auto& [name, place] : textures->members()) {
@@ -244,7 +186,7 @@ class SceneReader {
     }
 
     void read_shape(JsonObject object) {
-        const std::string type = object.required("type").one_of({"sphere", "quad", "plane"});
+        const std::string type = object.required("type").one_of({"sphere", "quad", "plane", "mesh"});
         if (type == "sphere") {
             Sphere sphere;
             sphere.center0 = position(object.required("center"));
@@ -262,6 +204,8 @@ class SceneReader {
             if (are_parallel(quad.edge_u, quad.edge_v)) edge_v.refuse("not be parallel to edge_u", "a parallel edge");
             quad.material_id = material_id(object.required("material"));
             scene_.quads.push_back(quad);
+        } else if (type == "mesh") {
+            read_mesh(object);
         } else {
             Plane plane;
             plane.point = position(object.required("point"));
@@ -271,6 +215,18 @@ class SceneReader {
             scene_.planes.push_back(plane);
         }
         object.refuse_unknown_keys();
+    }
+
+    void read_mesh(JsonObject& object) {
+        MeshShape shape = parse_mesh(object, images_);
+        const JsonCursor material = object.required("material");
+        shape.material_id = material_id(material);
+        const Material& made_of = scene_.materials[static_cast<std::size_t>(shape.material_id)];
+        const bool is_coloured = made_of.kind != Material::Kind::Dielectric;
+        if (shape.mesh->uv.empty() && is_coloured &&
+            scene_.textures[static_cast<std::size_t>(made_of.texture_id)].needs_uv())
+            material.refuse("name a material that needs no uv, or the mesh must have uv");
+        scene_.meshes.push_back(std::move(shape));
     }
 
     SceneImages images_;

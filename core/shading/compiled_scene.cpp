@@ -15,12 +15,12 @@ namespace raypool {
 
 namespace {
 
-enum class Shape : std::uint8_t { Sphere, Quad, Plane };
+enum class Shape : std::uint8_t { Sphere, Quad, Plane, Mesh };
 
 ImageRepeat image_repeat(Texture::Wrap wrap, Shape shape) {
     if (wrap == Texture::Wrap::Clamp) return {};
     if (shape == Shape::Sphere) return {.u = true, .v = false};
-    const bool repeats = wrap == Texture::Wrap::Repeat || shape == Shape::Plane;
+    const bool repeats = wrap == Texture::Wrap::Repeat || shape == Shape::Plane || shape == Shape::Mesh;
     return {.u = repeats, .v = repeats};
 }
 
@@ -37,6 +37,7 @@ class Compiler {
         check_size();
         add_textures();
         add_surfaces();
+        add_meshes();
         add_blocks(scene_, coincidence_, out_);
         if (features_.lights) out_.lights = light_table<Scalar>(scene_, coincidence_.is_hidden);
         features_.lights = !out_.lights.rows.empty();
@@ -47,6 +48,7 @@ class Compiler {
         compiled.features = features_;
         compiled.width = scene_.width;
         compiled.height = scene_.height;
+        compiled.first_triangle = static_cast<std::int32_t>(coincidence_.is_hidden.size());
         compiled.camera = make_camera<Scalar>(scene_.camera, scene_.width, scene_.height);
         const Vector3d middle = 0.5 * (scene_.background.bottom + scene_.background.top);
         const Vector3d slope = 0.5 * (scene_.background.top - scene_.background.bottom);
@@ -70,7 +72,8 @@ class Compiler {
             throw InputError(
                 fmt::format("image of {} x {}: must have at most 2^32 pixels", scene_.width, scene_.height));
         static_assert(kMostBoxes <= std::size_t{1} << PlanarMark<Scalar>::kGroupBits, "a group is an id");
-        const std::size_t count = scene_.spheres.size() + scene_.quads.size() + scene_.planes.size();
+        std::size_t count = scene_.spheres.size() + scene_.quads.size() + scene_.planes.size();
+        for (const MeshShape& shape : scene_.meshes) count += shape.mesh->triangles.size();
         if (count > kMostBoxes)
             throw InputError(fmt::format("scene of {} shapes: must have at most {}", count, kMostBoxes));
         constexpr std::size_t kMostTextures = SurfaceCode<int>::kMostTextures;
@@ -172,6 +175,35 @@ class Compiler {
         }
         out_.surfaces.push_back(surface);
         out_.planars.push_back(planar);
+    }
+
+    void add_meshes() {
+        using Triangle = TriangleRow<Scalar>;
+        for (const MeshShape& shape : scene_.meshes) {
+            const Mesh& mesh = *shape.mesh;
+            const std::size_t first_vertex = out_.vertices.size();
+            const auto bits = [](std::size_t number) { return of_bits<Scalar>(static_cast<Int<Scalar>>(number)); };
+            const Scalar surface = bits(out_.surfaces.size());
+            out_.surfaces.push_back(surface_row(shape.material_id, Shape::Mesh));
+            for (const auto& position : mesh.positions) {
+                const Vector3d placed = shape.placed(position);
+                VertexRow<Scalar>& row = out_.vertices.emplace_back(VertexRow<Scalar>{});
+                for (int i = 0; i < 3; ++i) row.value[i] = static_cast<Scalar>(placed[i]);
+            }
+            // A transform that mirrors turns triangles over; the outward side stays.
+            const bool is_mirrored = shape.is_mirrored();
+            for (const auto& triangle : mesh.triangles) {
+                Triangle& row = out_.triangles.emplace_back(Triangle{});
+                for (int i = 0; i < 3; ++i) row.value[Triangle::kVertex + i] = bits(first_vertex + triangle[i]);
+                if (is_mirrored) std::swap(row.value[1], row.value[2]);
+                row.value[Triangle::kSurface] = surface;
+            }
+            if (mesh.uv.empty()) continue;
+            out_.vertex_uv.resize(2 * first_vertex);
+            for (const auto& [u, v] : mesh.uv)
+                for (const float coordinate : {u, v}) out_.vertex_uv.push_back(static_cast<Scalar>(coordinate));
+        }
+        if (!out_.vertex_uv.empty()) out_.vertex_uv.resize(2 * out_.vertices.size());
     }
 
     const Scene& scene_;

@@ -1,7 +1,8 @@
 /// The scene as the kernels read it: immutable tables in the precision of the render.
 ///
 /// Made by compile(); shared by all threads without locks. Engines and kernels see nothing of the description in
-/// scene.h. A primitive's id counts spheres, then quads, then planes.
+/// scene.h. A primitive's id counts spheres, then quads, then planes,
+/// then triangles.
 #pragma once
 
 #include <cmath>
@@ -94,6 +95,18 @@ struct alignas(4 * sizeof(Scalar)) PlanarRow {
     Scalar value[kColumns];
 };
 
+/// Which vertices a triangle has, and the row of its mesh among the surfaces.
+template <class Scalar>
+struct alignas(4 * sizeof(Scalar)) TriangleRow {
+    enum Column { kVertex = 0, kSurface = 3, kColumns = 4 };  ///< three rows of vertices
+    Scalar value[kColumns];                                   ///< the bits of whole numbers
+};
+template <class Scalar>
+struct alignas(4 * sizeof(Scalar)) VertexRow {
+    enum Column { kPosition = 0, kColumns = 4 };
+    Scalar value[kColumns];
+};
+
 template <class Scalar>
 struct Sky {
     Vec3<Scalar> middle;  ///< radiance at the horizon, ...
@@ -103,10 +116,13 @@ struct Sky {
 /// What compile() makes of shapes, materials and textures.
 template <class Scalar>
 struct SceneTables : ShapeTables<Scalar> {
-    std::vector<SurfaceRow<Scalar>> surfaces;  ///< by primitive id
-    std::vector<TextureRow<Scalar>> textures;  ///< by texture id
-    std::vector<PlanarRow<Scalar>> planars;    ///< of the last primitives, by id less first_planar()
-    std::vector<ImageView<Scalar>> images;     ///< by texture id, beside `textures`
+    std::vector<SurfaceRow<Scalar>> surfaces;    ///< by primitive id, less triangles; and one of each mesh
+    std::vector<TextureRow<Scalar>> textures;    ///< by texture id
+    std::vector<PlanarRow<Scalar>> planars;      ///< of quads and planes, by id less first_planar()
+    std::vector<TriangleRow<Scalar>> triangles;  ///< by id less first_triangle
+    std::vector<VertexRow<Scalar>> vertices;
+    std::vector<Scalar> vertex_uv;          ///< two of each vertex; empty where no mesh has any
+    std::vector<ImageView<Scalar>> images;  ///< by texture id, beside `textures`
     std::vector<Scalar> texels;
     LightTable<Scalar> lights;
     EnvironmentTables<Scalar> environment;
@@ -117,6 +133,9 @@ struct SceneTables : ShapeTables<Scalar> {
         visit(self.surfaces);
         visit(self.textures);
         visit(self.planars);
+        visit(self.triangles);
+        visit(self.vertices);
+        visit(self.vertex_uv);
         visit(self.images);
         visit(self.texels);
         visit(self.lights.rows);
@@ -134,6 +153,7 @@ struct SceneView : ShapeView<Scalar> {
     Features features;
     std::int64_t width = 0;  ///< of the image, in pixels
     std::int64_t height = 0;
+    std::int32_t first_triangle = 0;  ///< its id: how many primitives are none
     Camera<Scalar> camera;
     Sky<Scalar> sky;
     EnvironmentView<Scalar> environment;  ///< in place of the sky if it has texels
@@ -144,6 +164,9 @@ struct SceneView : ShapeView<Scalar> {
     std::span<const SurfaceRow<Scalar>> surfaces;
     std::span<const TextureRow<Scalar>> textures;
     std::span<const PlanarRow<Scalar>> planars;
+    std::span<const TriangleRow<Scalar>> triangles;
+    std::span<const VertexRow<Scalar>> vertices;
+    std::span<const Scalar> vertex_uv;
     std::span<const ImageView<Scalar>> images;
     std::span<const LightRow<Scalar>> lights;
     std::span<const Scalar> light_weights;
@@ -154,9 +177,19 @@ struct SceneView : ShapeView<Scalar> {
     }
 
     /// The id of the first quad or plane.
-    [[nodiscard]] RAYPOOL_HOST_DEVICE std::size_t first_planar() const { return surfaces.size() - planars.size(); }
+    [[nodiscard]] RAYPOOL_HOST_DEVICE std::int32_t first_planar() const {
+        return first_triangle - static_cast<std::int32_t>(planars.size());
+    }
     [[nodiscard]] std::int64_t pixel_count() const { return width * height; }
 };
+
+/// The row of a primitive among the surfaces.
+template <class Scalar>
+Int<Scalar> surface_of(const SceneView<Scalar>& scene, std::int32_t primitive_id) {
+    if (primitive_id < scene.first_triangle) return primitive_id;
+    const auto triangle = static_cast<std::size_t>(primitive_id - scene.first_triangle);
+    return bits_of<Scalar>(scene.triangles[triangle].value[TriangleRow<Scalar>::kSurface]);
+}
 
 /// A view with the tables that it sees. Copies share them.
 template <class Scalar>
@@ -169,6 +202,9 @@ class CompiledScene : public SceneView<Scalar> {
         this->surfaces = tables_->surfaces;
         this->textures = tables_->textures;
         this->planars = tables_->planars;
+        this->triangles = tables_->triangles;
+        this->vertices = tables_->vertices;
+        this->vertex_uv = tables_->vertex_uv;
         this->images = tables_->images;
         this->lights = tables_->lights.rows;
         this->light_weights = tables_->lights.weights;

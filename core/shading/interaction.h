@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/geometry/shapes.h"
+#include "core/geometry/triangles.h"
 #include "core/shading/compiled_scene.h"
 #include "core/shading/textures.h"
 
@@ -50,11 +51,71 @@ RAYPOOL_INLINE SurfacePoint<Real> surface_point(const Ray<Real>& ray, const Real
     return point;
 }
 
+/// Of the lanes that met a triangle: the triangle, and where on it.
+template <class Real>
+struct TrianglePoint {
+    Mask<Real> is_here = Mask<Real>(false);
+    std::array<Int<Real>, 3> vertex_id;
+    std::array<Real, 3> weight;  ///< of the vertices, which add up to 1
+    Vec3<Real> position;         ///< of the vertices by their weights: its error is one of their coordinates'
+    Vec3<Real> error;            ///< of the position, at most, along each axis
+
+    /// Puts a point onto the triangle.
+    RAYPOOL_INLINE void place(SurfacePoint<Real>& point) const {
+        if (any(is_here)) point.position = select<Real>(is_here, position, point.position);
+    }
+};
+
+/// Loads the SurfaceRow of the primitives that rays met: of a triangle that of its mesh, with its own normal and mark.
+template <Features features, class Real>
+RAYPOOL_INLINE TrianglePoint<Real> load_surface(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray,
+                                                const Int<Real>& primitive_id, Int<Real>& surface_id, Real* row) {
+    using S = ScalarOf<Real>;
+    using Row = SurfaceRow<S>;
+    TrianglePoint<Real> triangle;
+    surface_id = primitive_id;
+    if constexpr (features.triangles) triangle.is_here = as_mask<Real>(primitive_id >= Int<Real>(scene.first_triangle));
+    if (!features.triangles || none(triangle.is_here)) {
+        load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, primitive_id, row);
+        return triangle;
+    }
+    using Triangle = TriangleRow<S>;
+    Real columns[Triangle::kColumns];
+    const Int<Real> number = select(triangle.is_here, primitive_id - Int<Real>(scene.first_triangle), Int<Real>(0));
+    load_rows<Triangle::kColumns, Real>(scene.triangles.data()->value, Triangle::kColumns, number, columns);
+    surface_id = select(triangle.is_here, bits_of<Real>(columns[Triangle::kSurface]), primitive_id);
+    std::array<Vec3<Real>, 3> vertex;
+    for (int i = 0; i < 3; ++i) {
+        using Vertex = VertexRow<S>;
+        Real position[Vertex::kColumns];
+        triangle.vertex_id[i] = bits_of<Real>(columns[Triangle::kVertex + i]);
+        load_rows<Vertex::kColumns, Real>(scene.vertices.data()->value, Vertex::kColumns, triangle.vertex_id[i],
+                                          position);
+        vertex[i] = vec3<Real>(position[0], position[1], position[2]);
+    }
+    const TriangleWeights<Real> weights = triangle_weights<Real>(ray.origin, ray_shear<Real>(ray.direction), vertex);
+    const Real scale = Real(1) / weights.determinant;
+    for (int i = 0; i < 3; ++i) triangle.weight[i] = weights.of_vertex[i] * scale;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto at = [&](int i) { return vertex[i][axis]; };
+        triangle.position[axis] =
+            mad<Real>(triangle.weight[0], at(0), mad<Real>(triangle.weight[1], at(1), triangle.weight[2] * at(2)));
+    }
+    triangle.error = triangle_error<Real>(vertex);
+    const Vec3<Real> outward = triangle_normal<Real>(vertex);
+
+    load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, surface_id, row);
+    for (int i = 0; i < 3; ++i) row[Row::kCenter + i] = select(triangle.is_here, outward[i], row[Row::kCenter + i]);
+    row[Row::kRadius] = select(triangle.is_here, PlanarMark<Real>::make(primitive_id), row[Row::kRadius]);
+    return triangle;
+}
+
 /// The row's colour, or what its texture makes of it, where `is_wanted`.
 template <Features features, class Real>
 RAYPOOL_INLINE Vec3<Real> surface_colour(const SceneView<ScalarOf<Real>>& scene, const SurfacePoint<Real>& point,
-                                         const Int<Real>& primitive_id, const Real* row,
-                                         const SurfaceCode<Int<Real>>& code, const Mask<Real>& is_wanted) {
+                                         const TrianglePoint<Real>& triangle, const Int<Real>& primitive_id,
+                                         const Real* row, const SurfaceCode<Int<Real>>& code,
+                                         const Mask<Real>& is_wanted) {
     using S = ScalarOf<Real>;
     using Row = SurfaceRow<S>;
     Vec3<Real> colour = vec3<Real>(row[Row::kColour], row[Row::kColour + 1], row[Row::kColour + 2]);
@@ -75,7 +136,7 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const SceneView<ScalarOf<Real>>& scene,
         if (any(is_checker_uv || is_image)) {
             uv = sphere_coordinates<Real>(point.outward);
             if constexpr (features.planar) {
-                const Mask<Real> is_planar = row[Row::kRadius] < Real(0);
+                const Mask<Real> is_planar = row[Row::kRadius] < Real(0) && !triangle.is_here;
                 if (any(is_planar)) {
                     Real planar[PlanarRow<S>::kColumns];
                     const Int<Real> planar_row = primitive_id - Int<Real>(static_cast<int>(scene.first_planar()));
@@ -88,6 +149,20 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const SceneView<ScalarOf<Real>>& scene,
                         plane_coordinates<Real>(point.position, part(PlanarRow<S>::kCorner), part(PlanarRow<S>::kDualU),
                                                 part(PlanarRow<S>::kDualV));
                     uv = {select(is_planar, in_plane[0], uv[0]), select(is_planar, in_plane[1], uv[1])};
+                }
+            }
+            if constexpr (features.triangles) {
+                const Mask<Real> is_mapped = triangle.is_here && (is_checker_uv || is_image);
+                if (any(is_mapped)) {
+                    std::array<Real, 2> on_triangle{Real(0), Real(0)};
+                    for (int i = 0; i < 3; ++i) {
+                        const Int<Real> first = select(is_mapped, triangle.vertex_id[i], Int<Real>(0)) * Int<Real>(2);
+                        for (int k = 0; k < 2; ++k)
+                            on_triangle[k] = mad<Real>(
+                                triangle.weight[i], detail::gather<Real>(scene.vertex_uv.data(), first + Int<Real>(k)),
+                                on_triangle[k]);
+                    }
+                    uv = {select(is_mapped, on_triangle[0], uv[0]), select(is_mapped, on_triangle[1], uv[1])};
                 }
             }
         }
@@ -178,12 +253,27 @@ struct RayStart {
     Int<Real> leaving_id;  ///< a sphere's id; of a quad or plane the id of the shapes in its plane
 };
 
-/// Of a ray that leaves `point` of primitive `primitive_id`, whose SurfaceRow is `row`. No other place decides where a
-/// ray starts. (Set in place: of a returned one gcc 12 makes a copy, which single rays feel.)
+/// Where rays start that leave a triangle on the side of unit `side`, which is its normal or that negated; of what is
+/// no triangle, the point.
+template <class Real>
+RAYPOOL_INLINE Vec3<Real> triangle_start(const SurfacePoint<Real>& point, const TrianglePoint<Real>& triangle,
+                                         const Vec3<Real>& side) {
+    const Vec3<Real> length = vec3<Real>(abs(side[0]), abs(side[1]), abs(side[2]));
+    return select<Real>(triangle.is_here, along<Real>(point.position, dot<Real>(length, triangle.error), side),
+                        point.position);
+}
+
+/// Of a ray that leaves `point` of primitive `primitive_id`, whose SurfaceRow is `row`, on the side from
+/// which it was met. On a triangle the start lies above it by as much as the point may be off: neighbours share its
+/// edges and are not left with it. No other place decides where a ray starts. (Set in place: of a returned one gcc 12
+/// makes a copy, which single rays feel.)
 template <Features features, class Real>
-RAYPOOL_INLINE void set_ray_start(RayStart<Real>& start, const SurfacePoint<Real>& point, const Int<Real>& primitive_id,
-                                  const Real* row) {
+RAYPOOL_INLINE void set_ray_start(RayStart<Real>& start, const SurfacePoint<Real>& point,
+                                  const TrianglePoint<Real>& triangle, const Int<Real>& primitive_id, const Real* row) {
     start.origin = point.position;
+    if constexpr (features.triangles) {
+        if (any(triangle.is_here)) start.origin = triangle_start<Real>(point, triangle, point.normal);
+    }
     start.leaving_id = primitive_id;
     if constexpr (features.planar) {
         start.leaving_id = PlanarMark<Real>::group(row[SurfaceRow<ScalarOf<Real>>::kRadius], primitive_id);

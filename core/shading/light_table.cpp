@@ -55,7 +55,7 @@ LightTable<Scalar> light_table(const Scene& scene, const std::vector<bool>& is_h
     for (double& power : powers) power /= sum;
     const std::vector<AliasEntry> entries = alias_table(powers);
     const std::vector<double> chosen = alias_chances(entries, draw_chances<Scalar>(entries.size()));
-    table.weights.resize(scene.spheres.size() + scene.quads.size() + scene.planes.size());
+    table.weights.resize(is_hidden.size() + scene.meshes.size());
     for (std::size_t i = 0; i < table.rows.size(); ++i) {
         Row& row = table.rows[i];
         row.value[Row::kThreshold] = static_cast<Scalar>(entries[i].threshold);

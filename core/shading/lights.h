@@ -167,7 +167,8 @@ RAYPOOL_INLINE Vec3<Real> emitted_radiance(const SceneView<ScalarOf<Real>>& scen
     const SurfaceCode<Int<Real>> code{bits_of<Real>(row[SurfaceRow<ScalarOf<Real>>::kCode])};
     const SurfacePoint<Real> point = surface_point<features, Real>(ray, light.t, row);
     const SurfaceMaterial<features, Real> material{code.material(), row[SurfaceRow<ScalarOf<Real>>::kParameter]};
-    const Vec3<Real> colour = surface_colour<features, Real>(scene, point, light.primitive_id, row, code, is_wanted);
+    const Vec3<Real> colour =
+        surface_colour<features, Real>(scene, point, TrianglePoint<Real>(), light.primitive_id, row, code, is_wanted);
     const Real emission = material.emission(light.is_front);
     return vec3<Real>(colour[0] * emission, colour[1] * emission, colour[2] * emission);
 }

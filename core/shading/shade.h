@@ -52,6 +52,7 @@ struct Scattered {
 
     // With Splitting::On, and where is_split: the above is the refracted branch, and there is a reflected one.
     Mask<Real> is_split;
+    Vec3<Real> reflected_origin;  ///< it leaves what the other one leaves
     Vec3<Real> reflected_direction;
     Vec3<Real> reflected_throughput;
     Mask<Real> is_reflected_alive;
@@ -84,14 +85,14 @@ template <Features features, class Real>
 /// what either technique would bring alone: no part of a path brings more than throughput times radiance.
 template <Features features, class Real>
 RAYPOOL_INLINE void share_with_lights(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray, const Real& t,
-                                      const Int<Real>& primitive_id, const Real* row, const PathKey<Real>& key,
+                                      const Int<Real>& surface_id, const Real* row, const PathKey<Real>& key,
                                       const Uint32<Real>& step, const RandomSeed& seed, const SurfacePoint<Real>& point,
                                       const SurfaceMaterial<features, Real>& material, LightPart<Real>& lights,
                                       Scattered<Real>& out) {
     using Row = SurfaceRow<ScalarOf<Real>>;
     const bool is_shared = lights.sampling == LightSampling::Mis;
     if (any(out.is_emitter && lights.arriving_density > Real(0))) {
-        const Real weight = detail::gather<Real>(scene.light_weights.data(), primitive_id);
+        const Real weight = detail::gather<Real>(scene.light_weights.data(), surface_id);
         const Mask<Real> is_sampled = out.is_emitter && lights.arriving_density > Real(0) && weight > Real(0);
         const Real density = light_density<features, Real>(ray, t, weight, row);
         const Real share = is_shared ? lights.arriving_density / (lights.arriving_density + density) : Real(0);
@@ -157,18 +158,21 @@ RAYPOOL_INLINE Scattered<Real> scatter(const SceneView<ScalarOf<Real>>& scene, c
                                        [[maybe_unused]] LightPart<Real>* lights = nullptr) {
     using Row = SurfaceRow<ScalarOf<Real>>;
     Real row[Row::kColumns];
-    load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, primitive_id, row);
+    Int<Real> surface_id;
+    const TrianglePoint<Real> triangle = load_surface<features, Real>(scene, ray, primitive_id, surface_id, row);
     const SurfaceCode<Int<Real>> code{bits_of<Real>(row[Row::kCode])};
-    const SurfacePoint<Real> point = surface_point<features, Real>(ray, t, row);
+    SurfacePoint<Real> point = surface_point<features, Real>(ray, t, row);
+    if constexpr (features.triangles) triangle.place(point);
     const std::array<Real, 4> random = random_block<Real>(key, step, RandomPurpose::Scatter, seed);
 
     Scattered<Real> out;
-    set_ray_start<features, Real>(out.start, point, primitive_id, row);
+    set_ray_start<features, Real>(out.start, point, triangle, primitive_id, row);
     const SurfaceMaterial<features, Real> material{code.material(), row[Row::kParameter]};
     out.is_emitter = material.is_emitter();
 
     const Mask<Real> is_glass = material.is_glass();  // glass has no colour
-    const Vec3<Real> colour = surface_colour<features, Real>(scene, point, primitive_id, row, code, !is_glass);
+    const Vec3<Real> colour =
+        surface_colour<features, Real>(scene, point, triangle, primitive_id, row, code, !is_glass);
     for (int i = 0; i < 3; ++i) out.throughput[i] = select(is_glass, throughput[i], throughput[i] * colour[i]);
     if constexpr (features.emissive) {
         if (any(out.is_emitter)) {
@@ -187,8 +191,16 @@ RAYPOOL_INLINE Scattered<Real> scatter(const SceneView<ScalarOf<Real>>& scene, c
     out.direction = sample.direction;
     if constexpr (features.lights) {
         if (lights != nullptr && lights->sampling != LightSampling::None)
-            share_with_lights<features, Real>(scene, ray, t, primitive_id, row, key, step, seed, point, material,
-                                              *lights, out);
+            share_with_lights<features, Real>(scene, ray, t, surface_id, row, key, step, seed, point, material, *lights,
+                                              out);
+    }
+    if constexpr (splitting == Splitting::On) out.reflected_origin = out.start.origin;
+    if constexpr (features.triangles && features.dielectric) {
+        const Mask<Real> is_through =
+            triangle.is_here && is_glass && dot<Real>(sample.direction, point.normal) < Real(0);
+        if (any(is_through))
+            out.start.origin =
+                select<Real>(is_through, triangle_start<Real>(point, triangle, -point.normal), out.start.origin);
     }
     if constexpr (splitting == Splitting::On) {
         out.is_split = sample.is_split;

@@ -10,6 +10,7 @@
 #include "core/geometry/large_boxes.h"
 #include "core/geometry/node_motion.h"
 #include "core/geometry/shape_bounds.h"
+#include "core/geometry/triangles.h"
 
 namespace raypool {
 
@@ -64,6 +65,34 @@ class BlockMaker {
         }
     }
 
+    /// Triangles without an area are not there.
+    void add_triangles() {
+        const auto first = static_cast<std::uint32_t>(coincidence_.is_hidden.size());
+        Ids ids;
+        for (std::uint32_t i = 0; i < tables_.triangles.size(); ++i)
+            if (triangle_normal<Scalar>(vertices_of(i)).allFinite()) ids.push_back(i);
+        const auto box_of = [&](std::uint32_t triangle) {
+            Vec3<Scalar> low;
+            Vec3<Scalar> high;
+            triangle_box<Scalar>(vertices_of(triangle), low, high);
+            return Box{low.template cast<double>(), high.template cast<double>()};
+        };
+        tables_.triangle_tree = block_tree<TriangleBlock<Scalar, kWidth>>(
+            boxes_by_id(ids, box_of), ids, [&](std::span<const std::uint32_t> in_leaf) {
+                TriangleBlock<Scalar, kWidth> block;
+                for (auto& vertex : block.vertex)
+                    for (auto& axis : vertex) std::fill_n(axis, kWidth, std::numeric_limits<Scalar>::quiet_NaN());
+                std::fill_n(block.id, kWidth, kNoPrimitive);
+                for (std::size_t lane = 0; lane < in_leaf.size(); ++lane) {
+                    const std::array<Vec3<Scalar>, 3> vertices = vertices_of(in_leaf[lane]);
+                    for (int i = 0; i < 3; ++i)
+                        for (int axis = 0; axis < 3; ++axis) block.vertex[i][axis][lane] = vertices[i][axis];
+                    block.id[lane] = static_cast<std::int32_t>(first + in_leaf[lane]);
+                }
+                return block;
+            });
+    }
+
   private:
     using Ids = std::vector<std::uint32_t>;
     static constexpr int kWidth = kTreeWidth<Scalar>;
@@ -74,6 +103,16 @@ class BlockMaker {
         for (std::size_t id = first; id < end; ++id)
             if (!coincidence_.is_hidden[id]) ids.push_back(static_cast<std::uint32_t>(id));
         return ids;
+    }
+
+    [[nodiscard]] std::array<Vec3<Scalar>, 3> vertices_of(std::uint32_t triangle) const {
+        std::array<Vec3<Scalar>, 3> vertices;
+        for (int i = 0; i < 3; ++i) {
+            const auto vertex = static_cast<std::size_t>(bits_of<Scalar>(tables_.triangles[triangle].value[i]));
+            const Scalar* position = tables_.vertices[vertex].value;
+            vertices[i] = vec3<Scalar>(position[0], position[1], position[2]);
+        }
+        return vertices;
     }
 
     SphereBlock<Scalar, kWidth> sphere_block(std::span<const std::uint32_t> ids) const {
@@ -158,6 +197,7 @@ void add_blocks(const Scene& scene, const Coincidence& coincidence, SceneTables<
     BlockMaker<Scalar> maker(scene, coincidence, tables);
     maker.add_spheres();
     maker.add_planars();
+    maker.add_triangles();
 }
 
 template void add_blocks(const Scene&, const Coincidence&, SceneTables<float>&);

@@ -3,8 +3,8 @@
 
 Usage: check_docs.py REPOSITORY RAYPOOL
 
-`raypool` and `scenes/generate` are run, in their order on the page, in a scratch folder that looks like the repository and
-whose files go away. Other scripts of the repository are not run; they must exist and be executable. Presets must exist.
+`raypool` and the generators of scenes/ are run, in their order on the page, in a scratch folder that looks like the
+repository and whose files go away. Other scripts of the repository are not run; they must exist and be executable. Presets must exist.
 """
 import json
 import os
@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 SECONDS_PER_COMMAND = 120
-RUN = ("raypool", "scenes/generate")
+RUN = ("raypool", "scenes/generate", "scenes/generate_mesh")
 NEVER_RUN = {"cmake", "ctest", "git", "cd", "clang-format"}
 
 

@@ -44,7 +44,7 @@ constexpr auto kRenderWithout = []<std::size_t... feature>(std::index_sequence<f
 (std::make_index_sequence<kFeatureNames.size()>());
 
 const std::vector<std::string> kScenes{"paper",    "furnace",    "mirror_corridor", "glass_stack", "cornell",
-                                       "half_sky", "one_sphere", "textures",        "sky_image"};
+                                       "half_sky", "one_sphere", "textures",        "sky_image",   "solids"};
 
 class LeavingOut : public testing::TestWithParam<std::size_t> {};
 

@@ -91,7 +91,7 @@ TEST(LightSamplingWithoutLights, IsNone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Equivalence, LightSampledImage,
-                         testing::Values("cornell", "mirror_corridor", "textures", "caustic", "sky_image"),
+                         testing::Values("cornell", "mirror_corridor", "textures", "caustic", "sky_image", "solids"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

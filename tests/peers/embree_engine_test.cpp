@@ -99,7 +99,7 @@ TEST_P(EmbreeEngineOfScene, MakesItWithLightSampling) {
 }
 
 std::vector<std::string> scene_names() {
-    std::vector<std::string> names{"textures"};
+    std::vector<std::string> names{"textures", "solids"};
     for (const BuiltinSceneText& scene : builtin_scene_texts()) names.emplace_back(scene.name);
     return names;
 }

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <random>
 
+#include "tests/reference/plain_vector.h"
+
 namespace raypool::test {
 
 namespace {
@@ -14,39 +16,17 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 /// No hit is closer: what a ray starts on is at 0 to rounding.
 constexpr double kLeast = 1e-7;
 
-struct Vec {
-    double x = 0, y = 0, z = 0;
-};
-Vec operator+(Vec a, Vec b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-Vec operator-(Vec a, Vec b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-Vec operator*(double s, Vec a) {
-    return {s * a.x, s * a.y, s * a.z};
-}
-Vec operator*(Vec a, Vec b) {
-    return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
-double dot(Vec a, Vec b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Vec cross(Vec a, Vec b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-Vec unit(Vec a) {
-    return 1 / std::sqrt(dot(a, a)) * a;
-}
 Vec vec(const Vector3d& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-/// A quad or a plane, with the vectors that coordinates in it are measured along.
+/// A quad, a triangle or a plane, with the vectors that coordinates in it are measured along.
 struct Flat {
+    enum class Kind { Quad, Plane, Triangle };  ///< ends where a coordinate leaves [0, 1], or nowhere, or at u + v = 1
     Vec corner, normal, along_u, along_v;
-    bool ends;  ///< where a coordinate leaves [0, 1]
+    Kind kind;
     int material_id;
+    Coordinates texture[3] = {{0, 0}, {1, 0}, {0, 1}};  ///< at (0, 0), (1, 0) and (0, 1)
 };
 
 struct Ball {
@@ -67,18 +47,26 @@ class Tracer {
         for (const Sphere& s : scene.spheres)
             balls_.push_back({vec(s.center0), vec(s.center1) - vec(s.center0), s.radius, s.material_id});
         for (const Quad& q : scene.quads) {
-            const Vec u = vec(q.edge_u);
-            const Vec v = vec(q.edge_v);
-            const Vec n = cross(u, v);
-            const double square = dot(n, n);  // of the area: what makes the coordinates run from 0 to 1
-            flats_.push_back(
-                {vec(q.corner), unit(n), 1 / square * cross(v, n), 1 / square * cross(n, u), true, q.material_id});
+            add(vec(q.corner), vec(q.edge_u), vec(q.edge_v), Flat::Kind::Quad, q.material_id);
+        }
+        for (const MeshShape& shape : scene.meshes) {
+            const Mesh& mesh = *shape.mesh;
+            const bool is_mirrored = shape.is_mirrored();
+            for (const auto& [a, b, c] : mesh.triangles) {
+                const auto placed = [&](std::uint32_t i) { return vec(shape.placed(mesh.positions[i])); };
+                Flat& flat = add(placed(a), placed(b) - placed(a), placed(c) - placed(a), Flat::Kind::Triangle,
+                                 shape.material_id);
+                if (is_mirrored) flat.normal = -1 * flat.normal;
+                if (mesh.uv.empty()) continue;
+                const std::uint32_t corners[3] = {a, b, c};
+                for (int i = 0; i < 3; ++i) flat.texture[i] = {mesh.uv[corners[i]][0], mesh.uv[corners[i]][1]};
+            }
         }
         for (const Plane& p : scene.planes) {
             const Vec n = unit(vec(p.normal));
             const Vec axis = std::abs(n.x) < 0.9 ? Vec{1, 0, 0} : Vec{0, 0, 1};
             const Vec u = unit(axis - dot(axis, n) * n);
-            flats_.push_back({vec(p.point), n, u, cross(n, u), false, p.material_id});
+            flats_.push_back({vec(p.point), n, u, cross(n, u), Flat::Kind::Plane, p.material_id});
         }
 
         const CameraDescription& camera = scene.camera;
@@ -147,6 +135,13 @@ class Tracer {
     [[nodiscard]] std::int64_t segments() const { return segments_; }
 
   private:
+    Flat& add(Vec corner, Vec u, Vec v, Flat::Kind kind, int material_id) {
+        const Vec n = cross(u, v);
+        const double square = dot(n, n);  // of the area: what makes the coordinates run from 0 to 1
+        flats_.push_back({corner, unit(n), 1 / square * cross(v, n), 1 / square * cross(n, u), kind, material_id});
+        return flats_.back();
+    }
+
     /// In [0, 1).
     double number() { return static_cast<double>(random_() >> 11U) * 0x1p-53; }
 
@@ -174,7 +169,8 @@ class Tracer {
             const double t = dot(flat.corner - origin, flat.normal) / dot(direction, flat.normal);
             if (!(t > kLeast && t < hit.t)) continue;
             const auto [u, v] = coordinates(flat, origin + t * direction);
-            if (flat.ends && (u < 0 || u > 1 || v < 0 || v > 1)) continue;
+            const double most_v = flat.kind == Flat::Kind::Triangle ? 1 - u : 1;
+            if (flat.kind != Flat::Kind::Plane && (u < 0 || u > 1 || v < 0 || v > most_v)) continue;
             hit = {t, nullptr, &flat};
         }
         return hit;
@@ -215,12 +211,16 @@ class Tracer {
         return unit(eta * direction + (eta * cos_in - cos_out) * normal);
     }
 
-    struct Coordinates {
-        double u, v;
-    };
     static Coordinates coordinates(const Flat& flat, Vec p) {
         const Vec offset = p - flat.corner;
         return {dot(offset, flat.along_u), dot(offset, flat.along_v)};
+    }
+
+    static Coordinates texture_coordinates(const Flat& flat, Vec p) {
+        const auto [s, t] = coordinates(flat, p);
+        const auto& [at_corner, at_u, at_v] = flat.texture;
+        return {at_corner.u + s * (at_u.u - at_corner.u) + t * (at_v.u - at_corner.u),
+                at_corner.v + s * (at_u.v - at_corner.v) + t * (at_v.v - at_corner.v)};
     }
 
     static bool is_odd_cell(double x, double y, double z) {
@@ -235,13 +235,14 @@ class Tracer {
             const Vec at = 1 / texture.scale * (p + 1e-9 * outward + vec(texture.offset));
             return vec(is_odd_cell(at.x, at.y, at.z) ? texture.odd : texture.even);
         }
-        const auto [u, v] = flat != nullptr ? coordinates(*flat, p)
+        const auto [u, v] = flat != nullptr ? texture_coordinates(*flat, p)
                                             : Coordinates{0.5 + std::atan2(-outward.z, outward.x) / (2 * kPi),
                                                           0.5 + std::asin(std::clamp(outward.y, -1.0, 1.0)) / kPi};
         if (texture.kind == Texture::Kind::CheckerUv)
             return vec(is_odd_cell(u / texture.scale, v / texture.scale, 0) ? texture.odd : texture.even);
-        const bool repeats = texture.wrap == Texture::Wrap::Repeat ||
-                             (texture.wrap == Texture::Wrap::ByShape && (flat == nullptr || !flat->ends));
+        const bool repeats =
+            texture.wrap == Texture::Wrap::Repeat ||
+            (texture.wrap == Texture::Wrap::ByShape && (flat == nullptr || flat->kind != Flat::Kind::Quad));
         return image_colour(*texture.image, u, v, repeats, repeats && flat != nullptr);
     }
 

@@ -77,6 +77,7 @@ std::vector<bool> hidden_in_stream(const CompiledScene<ScalarOf<Real>>& scene,
         }
     }
     detail::walk_stream<kEverything, Real>(scene.quad_tree, hits, rays.size(), lists, intersection, work);
+    detail::walk_stream<kEverything, Real>(scene.triangle_tree, hits, rays.size(), lists, intersection, work);
     detail::walk_stream<kEverything, Real>(scene.sphere_tree, hits, rays.size(), lists, intersection, work);
     std::vector<bool> is_hidden(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i) is_hidden[i] = hits.is_hidden(static_cast<std::uint32_t>(i));

@@ -96,7 +96,7 @@ void set_row(RayRow<Scalar>& row, const StartedRay<Scalar>& start) {
 }
 
 inline int tree_depth(const auto& scene) {
-    return std::max(scene.sphere_tree.depth, scene.quad_tree.depth);
+    return std::max({scene.sphere_tree.depth, scene.quad_tree.depth, scene.triangle_tree.depth});
 }
 
 }  // namespace raypool::wavefront

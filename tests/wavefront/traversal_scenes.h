@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "core/scene/scene.h"
+#include "tests/meshes.h"
 #include "tests/random_inputs.h"
 
 namespace raypool::wavefront {
@@ -63,12 +64,25 @@ inline Scene all_shapes() {
     return scene;
 }
 
+inline Scene meshes() {
+    test::RandomInputs random(5);
+    Scene scene = moving_spheres();
+    scene.spheres.resize(30);
+    for (const auto& mesh : {test::icosphere(2), test::triangle_soup(300, random)})
+        scene.meshes.push_back({std::make_shared<const Mesh>(mesh)});
+    return scene;
+}
+
 struct TestScene {
     const char* name;
     Scene (*make)();
 };
-inline constexpr TestScene kScenes[] = {
-    {"empty_scene", empty_scene},       {"one_sphere", one_sphere}, {"still_spheres", still_spheres},
-    {"moving_spheres", moving_spheres}, {"twins", twins},           {"all_shapes", all_shapes}};
+inline constexpr TestScene kScenes[] = {{"empty_scene", empty_scene},
+                                        {"one_sphere", one_sphere},
+                                        {"still_spheres", still_spheres},
+                                        {"moving_spheres", moving_spheres},
+                                        {"twins", twins},
+                                        {"all_shapes", all_shapes},
+                                        {"meshes", meshes}};
 
 }  // namespace raypool::wavefront

@@ -35,6 +35,7 @@ void trace_stream(const CompiledScene<ScalarOf<Real>>& scene, const std::vector<
         }
     }
     detail::walk_stream<kEverything, Real>(scene.quad_tree, stream.hits(), rays.size(), lists, intersection, work);
+    detail::walk_stream<kEverything, Real>(scene.triangle_tree, stream.hits(), rays.size(), lists, intersection, work);
     detail::walk_stream<kEverything, Real>(scene.sphere_tree, stream.hits(), rays.size(), lists, intersection, work);
 }
 

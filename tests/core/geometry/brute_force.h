@@ -61,6 +61,19 @@ Scalar shape_distance(const Block& block, int lane, const Ray<Scalar>& ray, std:
     return is_inside ? t : kInfinity<Scalar>;
 }
 
+template <InBox, class Scalar, IsTriangles Block>
+Scalar shape_distance(const Block& block, int lane, const Ray<Scalar>& ray, std::int32_t leaving_id) {
+    std::array<Vec3<Scalar>, 3> vertices;
+    for (int i = 0; i < 3; ++i) vertices[static_cast<std::size_t>(i)] = lane_of<Scalar>(block.vertex[i], lane);
+    const Scalar t =
+        triangle_distance<Scalar>(ray.origin, ray_shear<Scalar>(ray.direction), vertices, block.id[lane] == leaving_id);
+    Vec3<Scalar> low;
+    Vec3<Scalar> high;
+    triangle_box<Scalar>(vertices, low, high);
+    const RayInverse<Scalar> inverse = ray_inverse<Scalar>(ray.direction);
+    return is_inside_box<Scalar>(low, high, ray.origin, inverse, t) ? t : kInfinity<Scalar>;
+}
+
 template <InBox in_box, class Scalar, class Block>
 void ask_all(std::span<const Block> blocks, const Ray<Scalar>& ray, std::int32_t leaving_id, auto tell) {
     for (const Block& block : blocks)
@@ -76,6 +89,7 @@ void for_each_distance(const ShapeView<Scalar>& scene, const Ray<Scalar>& ray, s
     ask_all<InBox::No>(scene.planes, ray, leaving_id, tell);
     ask_all<InBox::Yes>(scene.sphere_tree.blocks, ray, leaving_id, tell);
     ask_all<InBox::Yes>(scene.quad_tree.blocks, ray, leaving_id, tell);
+    ask_all<InBox::Yes>(scene.triangle_tree.blocks, ray, leaving_id, tell);
 }
 
 template <class Scalar>

@@ -116,6 +116,7 @@ std::vector<std::byte> bytes_of(const CompiledScene<float>& scene) {
         for (const auto& block : tree.blocks) append_bytes(bytes, &block.id, 1);
     };
     append_tree(scene.sphere_tree);
+    append_tree(scene.triangle_tree);
     append_tree(scene.quad_tree);
     return bytes;
 }

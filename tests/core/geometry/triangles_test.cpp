@@ -1,0 +1,162 @@
+/// Meshes let no ray through between triangles, and no ray meets again the surface that it left.
+#include "core/geometry/triangles.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "core/geometry/occlusion.h"
+#include "core/shading/shade.h"
+#include "tests/core/geometry/brute_force.h"
+#include "tests/meshes.h"
+
+namespace raypool::test {
+namespace {
+
+constexpr Vector3d (*kNowhere)() = [] { return Vector3d(0, 0, 0); };
+constexpr Vector3d (*kFarAway)() = [] { return Vector3d(8000, -5000, 4000); };
+
+template <class Scalar>
+Hit<Scalar> hit_of(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray, std::int32_t leaving_id) {
+    NoTestCount work;
+    return closest_hit<kEverything>(scene, ray, leaving_id, work);
+}
+template <class Scalar>
+Vec3<Scalar> vertex(const CompiledScene<Scalar>& scene, std::uint32_t triangle, int i) {
+    const auto id = static_cast<std::size_t>(bits_of<Scalar>(scene.triangles[triangle].value[i]));
+    const Scalar* row = scene.vertices[id].value;
+    return vec3<Scalar>(row[0], row[1], row[2]);
+}
+
+template <class Scalar>
+class TrianglesOf : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(TrianglesOf, Scalars);
+
+/// Rays from within a closed mesh toward its vertices, points of edges and places of triangles.
+TYPED_TEST(TrianglesOf, LetNothingThroughAtVerticesAndEdges) {
+    using Scalar = TypeParam;
+    for (const auto& offset : {kNowhere(), kFarAway()}) {
+        const CompiledScene<Scalar> scene = compile<Scalar>(scene_of(icosphere(4), offset));
+        ASSERT_EQ(scene.triangles.size(), 20U * 256U);
+        RandomInputs random(51);
+        int leaks = 0;
+        int at_vertices = 0;
+        for (int i = 0; i < 100'000; ++i) {
+            const auto triangle = static_cast<std::uint32_t>(random.below(static_cast<int>(scene.triangles.size())));
+            const Vec3<Scalar> from =
+                offset.template cast<Scalar>() + static_cast<Scalar>(0.5) * random.point<Scalar>(1);
+            const Vec3<Scalar> a = vertex(scene, triangle, 0);
+            const Vec3<Scalar> b = vertex(scene, triangle, 1);
+            const auto s = i % 3 == 0 ? Scalar(0) : random.unit_interval<Scalar>();
+            const Vec3<Scalar> target = a + s * (b - a);
+            const Ray<Scalar> ray{from, unit<Scalar>(target - from), 0};
+            leaks += hit_of(scene, ray, kNoPrimitive).primitive_id == kNoPrimitive ? 1 : 0;
+            at_vertices += s == 0 ? 1 : 0;
+        }
+        EXPECT_EQ(leaks, 0) << "around " << offset.transpose();
+        EXPECT_GT(at_vertices, 30'000);
+    }
+}
+
+/// Of a convex mesh: what leaves it outward meets nothing, what leaves it inward meets something, and that is not what
+/// it left.
+TYPED_TEST(TrianglesOf, AreNotMetAgainByWhatLeavesThem) {
+    using Scalar = TypeParam;
+    for (const auto& offset : {kNowhere(), kFarAway()}) {
+        Scene described = scene_of(icosphere(4), offset);
+        const CompiledScene<Scalar> scene = compile<Scalar>(described);
+        RandomInputs random(52);
+        int false_hits = 0;
+        int leaks = 0;
+        for (int i = 0; i < 100'000; ++i) {
+            const Vec3<Scalar> from =
+                offset.template cast<Scalar>() + static_cast<Scalar>(2) * random.direction<Scalar>();
+            const Vec3<Scalar> to = offset.template cast<Scalar>() + static_cast<Scalar>(0.5) * random.point<Scalar>(1);
+            const bool is_inside = i % 2 == 0;
+            const Ray<Scalar> ray{is_inside ? to : from, unit<Scalar>(is_inside ? from - to : to - from), 0};
+            const Hit<Scalar> hit = hit_of(scene, ray, kNoPrimitive);
+            ASSERT_NE(hit.primitive_id, kNoPrimitive);
+            const PathKey<Scalar> key{static_cast<std::uint32_t>(i), 0};
+            const Scattered<Scalar> out =
+                scatter<kEverything, Scalar>(scene, ray, hit.t, hit.primitive_id, vec3<Scalar>(1, 1, 1), key, 0, {});
+            const Hit<Scalar> next = hit_of(scene, Ray<Scalar>{out.start.origin, out.direction, 0}, kNoPrimitive);
+            if (is_inside) {
+                leaks += next.primitive_id == kNoPrimitive ? 1 : 0;
+                false_hits += next.primitive_id == hit.primitive_id ? 1 : 0;
+            } else {
+                false_hits += next.primitive_id != kNoPrimitive ? 1 : 0;
+            }
+        }
+        EXPECT_EQ(false_hits, 0) << "around " << offset.transpose();
+        EXPECT_EQ(leaks, 0) << "around " << offset.transpose();
+    }
+}
+
+/// The closest of all triangles, one by one; of a tie the first.
+TYPED_TEST(TrianglesOf, AreFoundByTreesAsOneByOne) {
+    using Scalar = TypeParam;
+    RandomInputs random(53);
+    const CompiledScene<Scalar> scene = compile<Scalar>(scene_of(triangle_soup(500, random)));
+    int hits = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const Ray<Scalar> ray{random.point<Scalar>(7), random.direction<Scalar>(), 0};
+        const Hit<Scalar> expected = brute_force_hit<Scalar>(scene, ray, kNoPrimitive);
+        const Hit<Scalar> hit = hit_of(scene, ray, kNoPrimitive);
+        ASSERT_EQ(hit.primitive_id, expected.primitive_id) << i;
+        ASSERT_EQ(hit.t, expected.t) << i;
+        hits += hit.primitive_id != kNoPrimitive ? 1 : 0;
+        const Occlusion<Scalar> at_hit{hit.t, static_cast<std::int32_t>(hit.primitive_id)};
+        NoTestCount work;
+        EXPECT_FALSE(is_occluded<kEverything>(scene, ray, kNoPrimitive, at_hit, work))
+            << "nothing is before the closest";
+        if (hit.primitive_id == kNoPrimitive) continue;
+        EXPECT_TRUE(
+            is_occluded<kEverything>(scene, ray, kNoPrimitive, Occlusion<Scalar>{2 * hit.t, kNoPrimitive}, work));
+    }
+    EXPECT_GT(hits, 5000);
+}
+
+/// By the determinant of Moeller and Trumbore, in long double.
+TEST(Triangle, IsMetWhereTheDeterminantSays) {
+    RandomInputs random(54);
+    int met = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        std::array<Vec3<double>, 3> vertices;
+        for (auto& v : vertices) v = random.point<double>(2);
+        const Vec3<double> origin = random.point<double>(4);
+        const Vec3<double> direction = random.direction<double>();
+        const auto wide = [](const Vec3<double>& v) { return v.cast<long double>().eval(); };
+        const auto e1 = (wide(vertices[1]) - wide(vertices[0])).eval();
+        const auto e2 = (wide(vertices[2]) - wide(vertices[0])).eval();
+        const auto p = wide(direction).cross(e2).eval();
+        const long double det = e1.dot(p);
+        const auto s = (wide(origin) - wide(vertices[0])).eval();
+        const long double u = s.dot(p) / det;
+        const auto q = s.cross(e1).eval();
+        const long double v = wide(direction).dot(q) / det;
+        const long double t = e2.dot(q) / det;
+        const long double inside = std::min({u, v, 1 - u - v});
+        if (std::abs(inside) < 1e-9L || std::abs(det) < 1e-6L) continue;
+        const double got = triangle_distance<double>(origin, ray_shear<double>(direction), vertices, false);
+        if (inside > 0 && t > 0) {
+            EXPECT_NEAR(got, static_cast<double>(t), 1e-7 * static_cast<double>(t));
+            ++met;
+        } else {
+            EXPECT_EQ(got, kInfinity<double>);
+        }
+    }
+    EXPECT_GT(met, 1000);
+}
+
+TEST(Triangle, HasTheNormalOfItsOrder) {
+    const std::array<Vec3<float>, 3> tiny{vec3<float>(0, 0, 0), vec3<float>(1e-12F, 0, 0), vec3<float>(0, 1e-12F, 0)};
+    EXPECT_EQ(triangle_normal<float>(tiny), vec3<float>(0, 0, 1));
+    const std::array<Vec3<float>, 3> line{vec3<float>(0, 0, 0), vec3<float>(1, 1, 1), vec3<float>(2, 2, 2)};
+    EXPECT_FALSE(triangle_normal<float>(line).allFinite());
+    const std::array<Vec3<float>, 3> point{vec3<float>(3, 3, 3), vec3<float>(3, 3, 3), vec3<float>(3, 3, 3)};
+    EXPECT_FALSE(triangle_normal<float>(point).allFinite());
+}
+
+}  // namespace
+}  // namespace raypool::test
