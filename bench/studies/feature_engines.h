@@ -46,7 +46,8 @@ BeginFunction iterative_begin(std::size_t set);
 BeginFunction pool_begin(std::size_t set);
 
 /// They compile slowly, so they are compiled in three parts of so many sets (feature_engines.cpp).
-inline constexpr std::size_t kPartSets = 4;
+inline constexpr std::size_t kPartSets = 5;
+static_assert(3 * kPartSets >= kFeatureSets.size());
 struct FeatureFunctions {
     BeginFunction iterative, pool;
 };

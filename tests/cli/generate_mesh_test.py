@@ -59,7 +59,7 @@ class GenerateMeshTest(CommandTest):
                            ("made.json", "made.json")):
             scene["shapes"][-1]["file"] = file
             (self.folder / "broken.json").write_text(json.dumps(scene))
-            self.assert_refused("broken.json", named=["broken.json: /shapes/7/file: must ", says])
+            self.assert_refused("info", "broken.json", named=["broken.json: /shapes/7/file: must ", says])
 
 
 if __name__ == "__main__":
