@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <ranges>
 
 #include "bench/stability/around.h"
 #include "bench/stability/case.h"
@@ -51,7 +50,15 @@ constexpr auto kOurChances = []<class Scalar>(const Around<Scalar>& sky) -> Chan
             const auto is_before = [=](std::int32_t step) {
                 return draw_entry<Scalar>(static_cast<Scalar>(step) * Scalar(0x1p-24), static_cast<Scalar>(count)) < i;
             };
-            const std::int32_t next = *std::ranges::partition_point(std::views::iota(first, kSteps), is_before);
+            std::int32_t next = first;  // by halves, since views are not for clang 14
+            for (std::int32_t end = kSteps; next < end;) {
+                const std::int32_t middle = next + (end - next) / 2;
+                if (is_before(middle)) {
+                    next = middle + 1;
+                } else {
+                    end = middle;
+                }
+            }
             chances.push_back(static_cast<double>(next - first) / kSteps);
             first = next;
         }

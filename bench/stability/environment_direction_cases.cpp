@@ -62,9 +62,10 @@ constexpr auto kEvenAngles = []<class Scalar>(const EnvironmentView<Scalar>& vie
 constexpr auto kDensityOfAngles = []<class Scalar>(const EnvironmentView<Scalar>& view,
                                                    const Numbers<Scalar>& numbers) {
     EnvironmentSample<Scalar> sample = kEvenAngles(view, numbers);
-    const double down = (sample.texel_id / view.width + static_cast<double>(numbers[5])) / view.height;
+    const auto row = static_cast<std::int32_t>(sample.texel_id) / view.width;
+    const double down = (row + static_cast<double>(numbers[5])) / view.height;
     const double half = kPi / view.height / 2;
-    const double middle = half * (2 * (sample.texel_id / view.width) + 1);
+    const double middle = half * (2 * row + 1);
     sample.density *= static_cast<Scalar>(std::sin(middle) * std::sin(half) / (half * std::sin(kPi * down)));
     return sample;
 };

@@ -101,17 +101,18 @@ bool is_seen(NaiveVariant variant, const SceneView<float>& ours, const NaiveSphe
 }
 
 /// The scene with its image's density over the square taken for one over the sphere; the view lives by `texels`.
-SceneView<float> without_sine(SceneView<float> scene, std::vector<EnvironmentTexel<float>>& texels) {
+SceneView<float> without_sine(const SceneView<float>& scene, std::vector<EnvironmentTexel<float>>& texels) {
+    SceneView<float> changed = scene;
     constexpr double kPi = std::numbers::pi;
     const EnvironmentView<float>& environment = scene.environment;
     texels.assign(environment.texels.begin(), environment.texels.end());
     for (std::size_t i = 0; i < texels.size(); ++i) {
-        const auto row = static_cast<double>(i / static_cast<std::size_t>(environment.width));
-        const double sine = std::sin(kPi * (row + 0.5) / environment.height);
+        const auto row = static_cast<std::int64_t>(i) / environment.width;
+        const double sine = std::sin(kPi * (static_cast<double>(row) + 0.5) / environment.height);
         texels[i].value[EnvironmentTexel<float>::kDensity] *= static_cast<float>(2 * kPi * kPi * sine / (4 * kPi));
     }
-    scene.environment.texels = texels;
-    return scene;
+    changed.environment.texels = texels;
+    return changed;
 }
 
 }  // namespace
@@ -125,7 +126,8 @@ void render_naively(NaiveVariant variant, const Scene& scene, const RenderSettin
     }
     const CompiledScene<float> compiled = compile<float>(scene);
     std::vector<EnvironmentTexel<float>> texels;
-    const SceneView<float> ours = variant == NoSine ? without_sine(compiled, texels) : SceneView<float>(compiled);
+    const SceneView<float>& view = compiled;
+    const SceneView<float> ours = variant == NoSine ? without_sine(view, texels) : view;
     const LightSampling sampling = needed_light_sampling(ours.features, settings);
     const std::array plain{plain_checkers(scene, false), plain_checkers(scene, true)};
     const NaiveSpheres spheres(ours, variant == LeastDistance ? least_distance
