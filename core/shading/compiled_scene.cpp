@@ -73,7 +73,13 @@ class Compiler {
                 fmt::format("image of {} x {}: must have at most 2^32 pixels", scene_.width, scene_.height));
         static_assert(kMostBoxes <= std::size_t{1} << PlanarMark<Scalar>::kGroupBits, "a group is an id");
         std::size_t count = scene_.spheres.size() + scene_.quads.size() + scene_.planes.size();
-        for (const MeshShape& shape : scene_.meshes) count += shape.mesh->triangles.size();
+        std::size_t vertices = 0;
+        for (const MeshShape& shape : scene_.meshes) {
+            count += shape.mesh->triangles.size();
+            vertices += shape.mesh->positions.size();
+        }
+        if (vertices > 3 * kMostBoxes)
+            throw InputError(fmt::format("meshes of {} vertices: must have at most {}", vertices, 3 * kMostBoxes));
         if (count > kMostBoxes)
             throw InputError(fmt::format("scene of {} shapes: must have at most {}", count, kMostBoxes));
         constexpr std::size_t kMostTextures = SurfaceCode<int>::kMostTextures;

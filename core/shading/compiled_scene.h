@@ -1,8 +1,7 @@
 /// The scene as the kernels read it: immutable tables in the precision of the render.
 ///
 /// Made by compile(); shared by all threads without locks. Engines and kernels see nothing of the description in
-/// scene.h. A primitive's id counts spheres, then quads, then planes,
-/// then triangles.
+/// scene.h. A primitive's id counts spheres, then quads, then planes, then triangles.
 #pragma once
 
 #include <cmath>
@@ -220,8 +219,8 @@ class CompiledScene : public SceneView<Scalar> {
     std::shared_ptr<const SceneTables<Scalar>> tables_;
 };
 
-/// Refuses (InputError) an image of more than 2^32 pixels, or more primitives than ids. Shapes that coincide count once
-/// (coincidence.h); one that is hidden keeps its id and its row, and is in no block.
+/// Refuses (InputError) an image of more than 2^32 pixels, or more primitives or vertices than ids. Shapes that
+/// coincide count once (coincidence.h); one that is hidden keeps its id and its row, and is in no block.
 template <class Scalar>
 CompiledScene<Scalar> compile(const Scene& scene);
 /// The same with what coincides said by the caller.
