@@ -3,9 +3,9 @@
 #pragma once
 
 #include "core/geometry/shapes.h"
-#include "core/geometry/triangles.h"
 #include "core/shading/compiled_scene.h"
 #include "core/shading/textures.h"
+#include "core/shading/triangle_point.h"
 
 namespace raypool {
 
@@ -51,27 +51,11 @@ RAYPOOL_INLINE SurfacePoint<Real> surface_point(const Ray<Real>& ray, const Real
     return point;
 }
 
-/// Of the lanes that met a triangle: the triangle, and where on it.
-template <class Real>
-struct TrianglePoint {
-    Mask<Real> is_here = Mask<Real>(false);
-    std::array<Int<Real>, 3> vertex_id;
-    std::array<Real, 3> weight;  ///< of the vertices, which add up to 1
-    Vec3<Real> position;         ///< of the vertices by their weights: its error is one of their coordinates'
-    Vec3<Real> error;            ///< of the position, at most, along each axis
-
-    /// Puts a point onto the triangle.
-    RAYPOOL_INLINE void place(SurfacePoint<Real>& point) const {
-        if (any(is_here)) point.position = select<Real>(is_here, position, point.position);
-    }
-};
-
 /// Loads the SurfaceRow of the primitives that rays met: of a triangle that of its mesh, with its own normal and mark.
 template <Features features, class Real>
 RAYPOOL_INLINE TrianglePoint<Real> load_surface(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray,
                                                 const Int<Real>& primitive_id, Int<Real>& surface_id, Real* row) {
-    using S = ScalarOf<Real>;
-    using Row = SurfaceRow<S>;
+    using Row = SurfaceRow<ScalarOf<Real>>;
     TrianglePoint<Real> triangle;
     surface_id = primitive_id;
     if constexpr (features.triangles) triangle.is_here = as_mask<Real>(primitive_id >= Int<Real>(scene.first_triangle));
@@ -79,31 +63,12 @@ RAYPOOL_INLINE TrianglePoint<Real> load_surface(const SceneView<ScalarOf<Real>>&
         load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, primitive_id, row);
         return triangle;
     }
-    using Triangle = TriangleRow<S>;
-    Real columns[Triangle::kColumns];
-    const Int<Real> number = select(triangle.is_here, primitive_id - Int<Real>(scene.first_triangle), Int<Real>(0));
-    load_rows<Triangle::kColumns, Real>(scene.triangles.data()->value, Triangle::kColumns, number, columns);
-    surface_id = select(triangle.is_here, bits_of<Real>(columns[Triangle::kSurface]), primitive_id);
-    std::array<Vec3<Real>, 3> vertex;
-    for (int i = 0; i < 3; ++i) {
-        using Vertex = VertexRow<S>;
-        Real position[Vertex::kColumns];
-        triangle.vertex_id[i] = bits_of<Real>(columns[Triangle::kVertex + i]);
-        load_rows<Vertex::kColumns, Real>(scene.vertices.data()->value, Vertex::kColumns, triangle.vertex_id[i],
-                                          position);
-        vertex[i] = vec3<Real>(position[0], position[1], position[2]);
+    Vec3<Real> outward;
+    if constexpr (Simd<Real>) {
+        load_triangle<features, Real>(scene, ray, primitive_id, triangle, outward, surface_id);
+    } else {
+        call_load_triangle<features, Real>(scene, ray, primitive_id, triangle, outward, surface_id);
     }
-    const TriangleWeights<Real> weights = triangle_weights<Real>(ray.origin, ray_shear<Real>(ray.direction), vertex);
-    const Real scale = Real(1) / weights.determinant;
-    for (int i = 0; i < 3; ++i) triangle.weight[i] = weights.of_vertex[i] * scale;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto at = [&](int i) { return vertex[i][axis]; };
-        triangle.position[axis] =
-            mad<Real>(triangle.weight[0], at(0), mad<Real>(triangle.weight[1], at(1), triangle.weight[2] * at(2)));
-    }
-    triangle.error = triangle_error<Real>(vertex);
-    const Vec3<Real> outward = triangle_normal<Real>(vertex);
-
     load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, surface_id, row);
     for (int i = 0; i < 3; ++i) row[Row::kCenter + i] = select(triangle.is_here, outward[i], row[Row::kCenter + i]);
     row[Row::kRadius] = select(triangle.is_here, PlanarMark<Real>::make(primitive_id), row[Row::kRadius]);
