@@ -88,7 +88,7 @@ RAYPOOL_INLINE Real triangle_distance(const Vec3<Real>& origin, const RayShear<R
 }
 
 /// Half the width, along each axis, of what may be the place of a point of a triangle that is computed from its
-/// vertices: far above the 7 roundings of such a point and of the three that follow it.
+/// vertices: above the 7 roundings of such a point and the three that follow, of half an epsilon each.
 template <class Real>
 RAYPOOL_INLINE Vec3<Real> triangle_error(const std::array<Vec3<Real>, 3>& vertex) {
     using S = ScalarOf<Real>;

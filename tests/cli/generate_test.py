@@ -1,22 +1,15 @@
 """scenes/generate: as many shapes as asked for, the same file for the same seed, and scenes that engines agree on."""
 
 import json
-import pathlib
-import subprocess
 
-from command import CommandTest, main
+from command import main
+from generator_case import GeneratorTest
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scenes/generate"
 KINDS = ("spheres", "quads", "cluster")
 
 
-class GenerateTest(CommandTest):
-    def generate(self, *arguments):
-        return subprocess.run([SCRIPT, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, check=False)
-
-    def generate_well(self, *arguments):
-        result = self.generate(*arguments)
-        self.assertEqual((result.returncode, result.stderr), (0, ""), arguments)
+class GenerateTest(GeneratorTest):
+    script = "generate"
 
     def test_scenes_have_the_shapes_asked_for_and_one_image(self):
         for kind in KINDS:
@@ -50,14 +43,9 @@ class GenerateTest(CommandTest):
             self.assertNotEqual(a, c)
 
     def test_what_makes_no_sense_is_refused(self):
-        for arguments in ((0, "spheres", "-o", "x.json"), (10_000_001, "spheres", "-o", "x.json"),
-                          ("many", "quads", "-o", "x.json"),
-                          (10, "cubes", "-o", "x.json"), (10, "quads"), (10, "quads", "-o", "absent/x.json")):
-            before = self.listing()
-            result = self.generate(*arguments)
-            self.assertNotEqual(result.returncode, 0, arguments)
-            self.assertNotIn("Traceback", result.stderr, arguments)
-            self.assertEqual(self.listing(), before)
+        self.assert_each_refused((0, "spheres", "-o", "x.json"), (10_000_001, "spheres", "-o", "x.json"),
+                                 ("many", "quads", "-o", "x.json"),
+                                 (10, "cubes", "-o", "x.json"), (10, "quads"), (10, "quads", "-o", "absent/x.json"))
 
     def test_more_threads_build_the_same_trees(self):
         self.generate_well(20_000, "quads", "-o", "made.json")
