@@ -1,7 +1,5 @@
 #include "cluster/rank_engine.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -13,6 +11,7 @@
 
 #include "cluster/exchange.h"
 #include "cluster/work_units.h"
+#include "core/base/clock.h"
 #include "core/base/error.h"
 
 namespace raypool::cluster {
@@ -76,7 +75,7 @@ class RankSession : public RenderSession {
     }
 
     RenderReport render(const RenderUnit& all) override {
-        const double start = omp_get_wtime();
+        const double start = wall_seconds();
         const std::int64_t places =
             all.pixels == nullptr ? scene_.pixel_count() : static_cast<std::int64_t>(all.pixels->size());
         const std::vector<WorkUnit> units = work_units({all.first_sample, all.end_sample}, places, ranks_.count());
@@ -91,8 +90,8 @@ class RankSession : public RenderSession {
             const RenderReport part =
                 session_->add({unit.samples.first, unit.samples.end, is_part ? &pixels : all.pixels});
             report.add(part);
-            const double idle_until = omp_get_wtime() + (slowness_ - 1) * part.seconds;
-            while (omp_get_wtime() < idle_until) continue;  // a slow processor is busy, and leaves its time to no other
+            const double idle_until = wall_seconds() + (slowness_ - 1) * part.seconds;
+            while (wall_seconds() < idle_until) continue;  // a slow processor is busy, and leaves its time to no other
         };
         ranks_.hand_out(static_cast<std::int64_t>(units.size()), work, [&](std::int64_t i) {
             if (progress_ != nullptr) progress_->paths += units[static_cast<std::size_t>(i)].paths();
@@ -101,7 +100,7 @@ class RankSession : public RenderSession {
     }
 
     RenderReport collect() override {
-        const double start = omp_get_wtime();
+        const double start = wall_seconds();
         RenderReport report = session_->merge();
         if (framebuffer_.has_halves()) {
             sum_everywhere(ranks_, framebuffer_, pending_);
@@ -113,7 +112,7 @@ class RankSession : public RenderSession {
 
     /// What all ranks waited for is what rank 0 did.
     RenderReport timed(RenderReport report, double start) {
-        report.seconds = omp_get_wtime() - start;
+        report.seconds = wall_seconds() - start;
         ranks_.broadcast(std::as_writable_bytes(std::span(&report.seconds, 1)));
         return report;
     }

@@ -1,10 +1,9 @@
 /// What each work item and each pixel took: for a trace and for a cost image. Free where neither is asked for.
 #pragma once
 
-#include <omp.h>
-
 #include <chrono>
 
+#include "core/base/clock.h"
 #include "core/image/cost_image.h"
 #include "core/runtime/loop.h"
 #include "core/runtime/trace.h"
@@ -35,13 +34,13 @@ class ItemLog {
         end_span();
         x_ = x;
         y_ = y;
-        begin_s_ = omp_get_wtime();
+        begin_s_ = wall_seconds();
     }
     /// So many pixels of the item were rendered, or parts of their samples.
     void add(std::int64_t pixels) { pixels_ += lane_ == nullptr ? 0 : pixels; }
     void stop() {
         is_started_ = false;
-        if (lane_ != nullptr) end_s_ = omp_get_wtime();
+        if (lane_ != nullptr) end_s_ = wall_seconds();
     }
 
   private:

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/runtime/balanced_items.h"
 #include "core/runtime/engine.h"
@@ -167,18 +168,18 @@ class Session : public RenderSession {
     Session(const CompiledScene<Scalar>& scene, const RenderSettings& settings, Framebuffer& framebuffer,
             const TracerMaker<Scalar>& maker)
         : scene_(scene), settings_(settings), framebuffer_(framebuffer), make_(maker.make) {
-        const double start = omp_get_wtime();
+        const double start = wall_seconds();
         report_.threads.reserve(static_cast<std::size_t>(settings.threads));  // so that no report fails behind a render
         if (maker.check_stack != nullptr) {
             maker.check_stack(settings.depth, settings.threads);
-            report_.seconds = report_.setup_s = omp_get_wtime() - start;
+            report_.seconds = report_.setup_s = wall_seconds() - start;
         }
     }
 
   private:
     RenderReport render(const RenderUnit& unit) override {
         if (path_count(scene_, unit) == 0) return {};
-        const double start = omp_get_wtime();
+        const double start = wall_seconds();
         if (settings_.schedule.kind == LoopSchedule::Kind::Balanced) {
             const BalancedItems items(scene_.width, scene_.height, unit, settings_.threads);
             const auto visit = [&](std::int64_t item, const TraceLine& trace) {
@@ -206,7 +207,7 @@ class Session : public RenderSession {
     RenderReport loop_over(std::int64_t item_count, const VisitItem& visit, Addition addition, double start_s) {
         std::vector<std::unique_ptr<LineTracer>> tracers(static_cast<std::size_t>(settings_.threads));
         for (auto& tracer : tracers) tracer = make_(scene_, settings_, framebuffer_);
-        const double setup_s = omp_get_wtime() - start_s;
+        const double setup_s = wall_seconds() - start_s;
         TeamLoop loop(settings_);
         RenderReport report = run_threads(settings_, [&](ThreadReport& work, SampleStatistics& statistics) {
             LineTracer& tracer = *tracers[static_cast<std::size_t>(omp_get_thread_num())];

@@ -4,13 +4,12 @@
 /// Stages<...> (stages.h) is behind it. A call is for a batch of records, so that its cost is spread over many.
 #pragma once
 
-#include <omp.h>
-
 #include <cstddef>
 #include <memory>
 #include <span>
 #include <utility>
 
+#include "core/base/clock.h"
 #include "core/runtime/engine.h"
 #include "core/runtime/loop.h"
 #include "wavefront/camera_paths.h"
@@ -95,9 +94,9 @@ class RecordStages {
 
     /// Waits for the other threads.
     void wait() {
-        const double begin = omp_get_wtime();
+        const double begin = wall_seconds();
 #pragma omp barrier
-        const double end = omp_get_wtime();
+        const double end = wall_seconds();
         waited_s_ += end - begin;
         log_.waited(begin, end);
     }

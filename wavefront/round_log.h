@@ -7,11 +7,10 @@
 /// of end_round().
 #pragma once
 
-#include <omp.h>
-
 #include <utility>
 #include <vector>
 
+#include "core/base/clock.h"
 #include "core/runtime/settings.h"
 #include "core/runtime/trace.h"
 #include "wavefront/pool_report.h"
@@ -30,7 +29,7 @@ class RoundLog {
         if (!is_on_) return;
         rounds_.clear();
         round_ = 0;
-        round_begin_s_ = mark_s_ = omp_get_wtime();
+        round_begin_s_ = mark_s_ = wall_seconds();
         lane_ = trace_ == nullptr ? nullptr : &trace_->lane(thread_);
         traced_rounds_ = 0;
         traced_ = {};
@@ -51,14 +50,14 @@ class RoundLog {
     /// Starts the clock of a stage.
     void start() {
         if (!is_on_) return;
-        mark_s_ = omp_get_wtime();
+        mark_s_ = wall_seconds();
         within_s_ = 0;
     }
-    [[nodiscard]] double now() const { return is_on_ ? omp_get_wtime() : 0; }
+    [[nodiscard]] double now() const { return is_on_ ? wall_seconds() : 0; }
     /// What passed since `begin_s`, which now() said, belongs to `stage`, and not to the one that is under way.
     void stop_within(Stage stage, double begin_s, std::size_t records) {
         if (!is_on_) return;
-        const double end_s = omp_get_wtime();
+        const double end_s = wall_seconds();
         round().stage_s[static_cast<std::size_t>(stage)] += end_s - begin_s;
         within_s_ += end_s - begin_s;
         if (lane_ != nullptr) put_span({stage, begin_s, end_s, static_cast<std::int64_t>(records), 0});
@@ -66,7 +65,7 @@ class RoundLog {
     /// What passed since start() or the last stop() belongs to `stage`, which worked on `records`.
     void stop(Stage stage, std::size_t records) {
         if (!is_on_) return;
-        const double now = omp_get_wtime();
+        const double now = wall_seconds();
         round().stage_s[static_cast<std::size_t>(stage)] += now - mark_s_ - std::exchange(within_s_, 0);
         if (lane_ != nullptr) add_span({stage, mark_s_, now, static_cast<std::int64_t>(records), 0});
         mark_s_ = now;
@@ -98,7 +97,7 @@ class RoundLog {
     }
     /// `records` are in the pool, which is of this thread alone or of all.
     void occupancy(std::size_t records, Trace::Event::Kind pool) {
-        if (lane_ != nullptr) lane_->occupancy(omp_get_wtime(), static_cast<std::int64_t>(records), pool);
+        if (lane_ != nullptr) lane_->occupancy(wall_seconds(), static_cast<std::int64_t>(records), pool);
     }
     void end_round() {
         ahead_ = 0;
@@ -106,7 +105,7 @@ class RoundLog {
         if (round_ + 1 < kMostRounds) ++round_;
         if (lane_ == nullptr) return;
         end_span();
-        const double now = omp_get_wtime();
+        const double now = wall_seconds();
         lane_->span(
             "round", round_begin_s_, now,
             {{{"round", traced_rounds_++}, {"records", traced_.records_in}, {"survivors", traced_.records_out}}});

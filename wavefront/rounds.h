@@ -8,6 +8,7 @@
 
 #include <omp.h>
 
+#include "core/base/clock.h"
 #include "core/runtime/balanced_items.h"
 #include "core/runtime/team_loop.h"
 #include "wavefront/append.h"
@@ -104,7 +105,7 @@ class ThreadPoolSession : public PoolSession<Scalar> {
     RenderReport run(const RenderUnit& unit) override {
         const auto& scene = this->context().scene;
         const RenderSettings& settings = this->context().settings;
-        const double start = omp_get_wtime();
+        const double start = wall_seconds();
         if (settings.schedule.kind == LoopSchedule::Kind::Balanced) {
             const BalancedItems items(scene.width, scene.height, unit, settings.threads);
             this->share_pixels(items.splits_pixels());

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/base/memory.h"
 #include "core/runtime/engine.h"
@@ -29,7 +30,7 @@ class PoolSession : public RenderSession {
   public:
     PoolSession(const CompiledScene<Scalar>& scene, const RenderSettings& settings, const PoolSettings& pool,
                 Framebuffer& framebuffer, std::size_t record_bytes)
-        : begin_s_(omp_get_wtime()),
+        : begin_s_(wall_seconds()),
           settings_(settings),
           pool_(with_capacity(pool, scene)),
           framebuffer_(framebuffer),
@@ -103,11 +104,11 @@ class PoolSession : public RenderSession {
     RenderReport collect() final {
         if (accumulator_->block_count() == 0) return {};  // it adds to the framebuffer itself
         return run_threads(settings_, [&](ThreadReport&, SampleStatistics&) {
-            const double begin = omp_get_wtime();
+            const double begin = wall_seconds();
 #pragma omp for schedule(static) nowait
             for (std::size_t block = 0; block < accumulator_->block_count(); ++block) accumulator_->merge(block);
             if (settings_.trace != nullptr)
-                settings_.trace->lane(omp_get_thread_num()).span("merge", begin, omp_get_wtime());
+                settings_.trace->lane(omp_get_thread_num()).span("merge", begin, wall_seconds());
         });
     }
 

@@ -12,22 +12,22 @@ std::unique_ptr<RenderSession> begin_session(const CompiledScene<Scalar>& scene,
     return std::make_unique<SharedPoolSession<features, Scalar>>(scene, settings, pool, framebuffer, maker);
 }
 
-constexpr Features kStill = record_features({});
-constexpr Features kStillWithLights = record_features({.lights = true});
-constexpr Features kMoving = record_features(kAllButLights);
-constexpr Features kMovingWithLights = record_features(kEverything);
-
 #define RAYPOOL_SESSION(features, scalar)                                                                      \
     template std::unique_ptr<RenderSession> begin_session(const CompiledScene<scalar>&, const RenderSettings&, \
                                                           const PoolSettings&, Framebuffer&,                   \
-                                                          const StagesMaker<features, scalar>&);
-RAYPOOL_SESSION(kStill, float)
-RAYPOOL_SESSION(kStillWithLights, float)
-RAYPOOL_SESSION(kMoving, float)
-RAYPOOL_SESSION(kMovingWithLights, float)
+                                                          const StagesMaker<record_features(features), scalar>&);
+RAYPOOL_SESSION(kEverything, float)
 #ifndef RAYPOOL_NO_DOUBLE
-RAYPOOL_SESSION(kMoving, double)
-RAYPOOL_SESSION(kMovingWithLights, double)
+RAYPOOL_SESSION(kEverything, double)
+#endif
+#ifndef RAYPOOL_ONE_FEATURE_SET
+constexpr Features kStillWithLights{.lights = true};
+RAYPOOL_SESSION({}, float)
+RAYPOOL_SESSION(kStillWithLights, float)
+RAYPOOL_SESSION(kAllButLights, float)
+#ifndef RAYPOOL_NO_DOUBLE
+RAYPOOL_SESSION(kAllButLights, double)
+#endif
 #endif
 #undef RAYPOOL_SESSION
 

@@ -1,7 +1,5 @@
 // Adaptive sampling against the same number of samples everywhere: error, time, bias, and how threads share the work.
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -12,6 +10,7 @@
 #include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/runner.h"
+#include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/runtime/adaptive.h"
 #include "core/runtime/settings_text.h"
@@ -148,9 +147,9 @@ Case pair_case(const SharedScene& scene, const SharedReference& reference, const
                std::uint64_t seed) {
     const auto run = [=]() -> std::vector<Cells> {
         const wavefront::WavefrontEngine pool({});
-        const double begin = omp_get_wtime();
+        const double begin = wall_seconds();
         const Made adaptive = make_adaptive(pool, scene->in_float, settings_of(seed, kThreads), error);
-        const double adaptive_s = omp_get_wtime() - begin;
+        const double adaptive_s = wall_seconds() - begin;
 
         const auto spp = std::max<std::int64_t>(1, std::llround(adaptive.adaptive.mean_samples()));
         const accuracy::TimedImage same = render_image({}, *scene, {0, spp, seed, kThreads});

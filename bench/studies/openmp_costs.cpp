@@ -1,7 +1,5 @@
 #include "bench/studies/openmp_costs.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -9,6 +7,7 @@
 
 #include "bench/studies/renders.h"
 #include "bench/studies/statistics.h"
+#include "core/base/clock.h"
 #include "core/runtime/loop.h"
 
 namespace raypool::studies {
@@ -65,12 +64,12 @@ double barrier_seconds(int threads) {
 #pragma omp parallel num_threads(threads)
         {
 #pragma omp barrier
-            const double start = omp_get_wtime();
+            const double start = wall_seconds();
             for (int i = 0; i < kBarriers; ++i) {
 #pragma omp barrier
             }
 #pragma omp master
-            seconds = omp_get_wtime() - start;
+            seconds = wall_seconds() - start;
         }
         return seconds / kBarriers;
     });
@@ -81,10 +80,10 @@ double barrier_seconds(int threads) {
 double compute_loop_seconds(int threads, double seconds) {
     constexpr double kStepsPerSecond = 5e8;  // roughly, of one core
     const auto steps = static_cast<std::int64_t>(seconds * kStepsPerSecond);
-    const double start = omp_get_wtime();
+    const double start = wall_seconds();
 #pragma omp parallel num_threads(threads)
     keep(compute(steps));
-    return omp_get_wtime() - start;
+    return wall_seconds() - start;
 }
 
 ReplayCosts OpenMpCosts::at(int thread_count) const {

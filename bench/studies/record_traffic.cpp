@@ -1,12 +1,11 @@
 #include "bench/studies/record_traffic.h"
 
-#include <omp.h>
-
 #include <bit>
 #include <random>
 #include <vector>
 
 #include "bench/studies/statistics.h"
+#include "core/base/clock.h"
 #include "wavefront/ray_record.h"
 
 namespace raypool::studies {
@@ -36,7 +35,7 @@ double pass_s(std::size_t capacity, double survivors) {
     const std::size_t rounds = 1 + 4096 / capacity;  // of a small pool the clock would see nothing
     std::vector<double> seconds;
     for (int pass = 0; pass < kPasses; ++pass) {
-        const double begin = omp_get_wtime();
+        const double begin = wall_seconds();
         for (std::size_t round = 0; round < rounds; ++round) {
             std::size_t kept = 0;
             for (std::size_t i = 0; i < masks.size(); ++i) {
@@ -46,7 +45,7 @@ double pass_s(std::size_t capacity, double survivors) {
             }
             __asm__ volatile("" : : "r"(&records) : "memory");  // what was written may be read
         }
-        seconds.push_back((omp_get_wtime() - begin) / static_cast<double>(rounds * capacity));
+        seconds.push_back((wall_seconds() - begin) / static_cast<double>(rounds * capacity));
     }
     return median(seconds);
 }

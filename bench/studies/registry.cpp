@@ -8,9 +8,14 @@
 namespace raypool::studies {
 
 std::vector<Study> all_studies() {
-    return {load_study(),  replay_study(),         schedules_study(),   scaling_study(),  ranks_study(),
-            pool_study(),  scene_size_study(),     framebuffer_study(), ladder_study(),   features_study(),
-            depth_study(), speed_accuracy_study(), light_study(),       adaptive_study(), stability_study()};
+    return {
+        load_study(),     replay_study(),         schedules_study(),   scaling_study(),  ranks_study(),
+        pool_study(),     scene_size_study(),     framebuffer_study(), ladder_study(),
+#ifndef RAYPOOL_ONE_FEATURE_SET
+        features_study(),
+#endif
+        depth_study(),    speed_accuracy_study(), light_study(),       adaptive_study(), stability_study(),
+    };
 }
 
 Study make_study(const std::string& name) {

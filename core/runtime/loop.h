@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <ctime>
 #include <iterator>
 #include <vector>
 
+#include "core/base/clock.h"
 #include "core/base/first_exception.h"
 #include "core/runtime/engine.h"
 #include "core/runtime/trace.h"
@@ -120,13 +120,6 @@ class ProgressBatch {
     std::int64_t batch_ = 0;
 };
 
-/// Processor time of the calling thread, in seconds: what other processes take meanwhile does not count.
-inline double processor_seconds() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 /// OpenMP as a render wants it: the schedule asked for, and as many threads as asked for. Puts back what there was.
 class OpenMpState {
   public:
@@ -170,7 +163,7 @@ int make_by_threads(const RenderSettings& settings, Make make) {
 
 /// What passed since `start_s` was setup, for all of the `threads`.
 inline void count_setup(const RenderSettings& settings, double start_s, int threads, RenderReport& report) {
-    const double end_s = omp_get_wtime();
+    const double end_s = wall_seconds();
     report.setup_s += end_s - start_s;
     report.seconds += end_s - start_s;
     if (settings.trace == nullptr) return;
@@ -192,7 +185,7 @@ RenderReport run_threads(const RenderSettings& settings, Body body) {
     int count = 1;
 
     const OpenMpState state(settings.schedule);
-    const double start = omp_get_wtime();
+    const double start = wall_seconds();
     if (settings.trace != nullptr) settings.trace->begin(start, settings.threads);
 #pragma omp parallel num_threads(settings.threads)
     {
@@ -200,16 +193,16 @@ RenderReport run_threads(const RenderSettings& settings, Body body) {
         const auto id = static_cast<std::size_t>(omp_get_thread_num());
         if (id == 0) count = omp_get_num_threads();
         ThreadReport work;
-        const double begin = omp_get_wtime();
+        const double begin = wall_seconds();
         const double processor_begin = processor_seconds();
         failure.run([&] { body(work, all_statistics[id]); });
-        ends[id] = omp_get_wtime();
+        ends[id] = wall_seconds();
         work.busy_s = ends[id] - begin - work.wait_s;
         work.processor_s = processor_seconds() - processor_begin;
         report.threads[id] = work;
         if (settings.trace != nullptr) settings.trace->lane(static_cast<int>(id)).span("wait", start, begin);
     }
-    const double end = omp_get_wtime();
+    const double end = wall_seconds();
     failure.rethrow();
     report.seconds = end - start;
 

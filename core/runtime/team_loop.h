@@ -9,6 +9,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/base/clock.h"
 #include "core/runtime/engine.h"
 #include "core/runtime/trace.h"
 
@@ -43,7 +44,7 @@ class TeamLoop {
 
     double run_tasks(std::int64_t count, std::function<void(std::int64_t)> visit) {
         ThreadTasks& own = tasks_[static_cast<std::size_t>(omp_get_thread_num())];
-        own = {std::move(visit), omp_get_wtime()};
+        own = {std::move(visit), wall_seconds()};
         // Threads do tasks while they wait at the end of the single.
 #pragma omp single
         {
@@ -63,14 +64,14 @@ class TeamLoop {
                 }
             }
         }
-        const double end_s = omp_get_wtime();
+        const double end_s = wall_seconds();
         if (settings_.trace != nullptr) settings_.trace->lane(omp_get_thread_num()).span("wait", own.end_s, end_s);
         return end_s - own.end_s;
     }
     void do_task(std::int64_t i) {
         ThreadTasks& own = tasks_[static_cast<std::size_t>(omp_get_thread_num())];
         own.visit(i);
-        own.end_s = omp_get_wtime();
+        own.end_s = wall_seconds();
     }
 
     const RenderSettings& settings_;

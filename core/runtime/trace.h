@@ -33,7 +33,7 @@ class Trace {
     struct Event {
         enum class Kind : std::uint8_t { Span, Counter, ThreadCounter };
         const char* name;
-        double begin_s;  ///< by omp_get_wtime()
+        double begin_s;  ///< by wall_seconds()
         double end_s;    ///< of a counter the same
         Figures figures;
         Kind kind;

@@ -91,9 +91,14 @@ constexpr std::size_t compiled_features_index(const Features& features, std::siz
 }
 
 /// The first of them in a precision. In double precision, where accuracy is what is asked for, nothing is compiled for
-/// the first set alone: its scenes run on the second.
+/// the first set alone: its scenes run on the second. A build with RAYPOOL_ONE_FEATURE_SET has the last alone.
 template <class Scalar>
-inline constexpr std::size_t kFirstCompiledFeatures = sizeof(Scalar) > sizeof(float) ? 1 : 0;
+inline constexpr std::size_t kFirstCompiledFeatures =
+#ifdef RAYPOOL_ONE_FEATURE_SET
+    kCompiledFeatures.size() - 1;
+#else
+    sizeof(Scalar) > sizeof(float) ? 1 : 0;
+#endif
 
 /// Calls function.template operator()<compiled features>() with the first compiled set, from the i-th on, that covers
 /// `features`.
