@@ -77,22 +77,26 @@ void info(const std::string& name) {
               compiled.vertices.size());
     print_hidden(scene, coincidence.is_hidden);
     print("features: {}\n", listed(compiled.features));
-    const auto code = [&](std::size_t first) {
-        return listed(kCompiledFeatures[compiled_features_index(compiled.features, first)]);
+    const auto code = [](const Features& features, std::size_t first) {
+        return kCompiledFeatures[compiled_features_index(features, first)];
     };
-    print("runs on code compiled for: {}; in double: {}\n", code(kFirstCompiledFeatures<float>),
-          code(kFirstCompiledFeatures<double>));
+    print("runs on code compiled for: {}; in double: {}\n",
+          listed(code(compiled.features, kFirstCompiledFeatures<float>)),
+          listed(code(compiled.features, kFirstCompiledFeatures<double>)));
     const CodeWidths widths = code_widths();
     print("which may use: {}; stages of {} rays in float, {} in double; trees {} and {} wide\n",
           fmt::format("{}", fmt::join(widths.instruction_sets, ", ")), widths.float_lanes, widths.double_lanes,
           widths.float_tree_width, widths.double_tree_width);
     Features without_lights = compiled.features;
     without_lights.lights = false;
-    print("ray record: {} bytes in float, {} in double{}\n", ray_record_bytes(compiled.features, sizeof(float)),
-          ray_record_bytes(compiled.features, sizeof(double)),
+    const auto record_bytes = [&]<class Scalar>(const Features& features, Scalar) {
+        return ray_record_bytes(code(features, kFirstCompiledFeatures<Scalar>), sizeof(Scalar));
+    };
+    print("ray record: {} bytes in float, {} in double{}\n", record_bytes(compiled.features, float{}),
+          record_bytes(compiled.features, double{}),
           compiled.features.lights
-              ? fmt::format("; {} and {} without light sampling", ray_record_bytes(without_lights, sizeof(float)),
-                            ray_record_bytes(without_lights, sizeof(double)))
+              ? fmt::format("; {} and {} without light sampling", record_bytes(without_lights, float{}),
+                            record_bytes(without_lights, double{}))
               : "");
     print("tested before the trees: {} spheres, {} planes\n", filled_lanes(compiled.large_spheres),
           filled_lanes(compiled.planes));

@@ -165,7 +165,8 @@ TEST(RoundsReport, IsEmptyUnlessRoundsAreLogged) {
     settings.count_work = false;
     const Rendered got = render_pool(scene, settings, shared_pool());
     EXPECT_TRUE(pool_report(got.report).rounds.empty());
-    EXPECT_EQ(pool_report(got.report).record_bytes, 56U);
+    const Features& code = kCompiledFeatures[compiled_features_index(scene.features, kFirstCompiledFeatures<float>)];
+    EXPECT_EQ(pool_report(got.report).record_bytes, ray_record_bytes(code, sizeof(float)));
     EXPECT_EQ(got.report.segments(), render_recursive(scene, settings).report.segments());
 }
 
