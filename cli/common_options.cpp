@@ -25,7 +25,8 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_flag("--roulette", options.roulette, "End paths that carry little by chance, without bias");
     command
         .add_option("--light-sampling", options.light_sampling,
-                    "How paths find emissive quads and spheres: none (by chance), light (by sampling them), or mis (both, "
+                    "How paths find emissive quads, spheres and meshes: none (by chance), light (by sampling them), or "
+                    "mis (both, "
                     "weighted; the default)")
         ->check(CLI::IsMember({"none", "light", "mis"}));
     command.add_option("--threads", options.threads, "OpenMP threads (default: OMP_NUM_THREADS)")

@@ -57,8 +57,8 @@ struct Sample {
         const auto part = [&](int first) { return vec3<Scalar>(light[first], light[first + 1], light[first + 2]); };
         return part(Light::kPoint) + random[1] * part(Light::kEdgeU) + random[2] * part(Light::kEdgeV) - start.origin;
     }
-    [[nodiscard]] LightSample<Scalar> ours(Scalar* row) const {
-        return sample_light<kEverything, Scalar>(scene, start, 0, random, row);
+    [[nodiscard]] LightSample<Scalar> ours(LightSurface<Scalar>& surface) const {
+        return sample_light<kEverything, Scalar>(scene, start, 0, random, surface);
     }
     [[nodiscard]] Hit<Scalar> closest(const Vec3<Scalar>& direction) const {
         NoTestCount work;
@@ -74,8 +74,8 @@ Sample<Scalar> drawn(RandomInputs& random, const CompiledScene<Scalar>& scene, c
 
 // Ways to tell whether the sampled point is seen.
 constexpr auto kOurShadow = []<class Scalar>(const Sample<Scalar>& sample) {
-    Scalar row[SurfaceRow<Scalar>::kColumns];
-    const LightSample<Scalar> light = sample.ours(row);
+    LightSurface<Scalar> surface;
+    const LightSample<Scalar> light = sample.ours(surface);
     if (!(light.t < kInfinity<Scalar>)) return false;
     NoTestCount work;
     return !is_occluded<kEverything>(sample.scene, Ray<Scalar>{sample.start.origin, light.direction, 0},
@@ -94,8 +94,8 @@ constexpr auto kShortened = []<class Scalar>(const Sample<Scalar>& sample) {
 };
 /// What the ray meets first must be the light.
 constexpr auto kMeetsTheLight = []<class Scalar>(const Sample<Scalar>& sample) {
-    Scalar row[SurfaceRow<Scalar>::kColumns];
-    const LightSample<Scalar> light = sample.ours(row);
+    LightSurface<Scalar> surface;
+    const LightSample<Scalar> light = sample.ours(surface);
     return sample.closest(light.direction).primitive_id == light.primitive_id;
 };
 
@@ -163,8 +163,8 @@ constexpr auto kSmallLight = []<class Scalar>(const auto& is_lit, double radius,
 
 // Ways to tell how far a sampled point of a quad is.
 constexpr auto kOurDistance = []<class Scalar>(const Sample<Scalar>& sample) {
-    Scalar row[SurfaceRow<Scalar>::kColumns];
-    return sample.ours(row).t;
+    LightSurface<Scalar> surface;
+    return sample.ours(surface).t;
 };
 constexpr auto kByThePlane = []<class Scalar>(const Sample<Scalar>& sample) {
     const Scalar* row = sample.scene.surfaces[0].value;

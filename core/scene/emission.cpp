@@ -58,9 +58,16 @@ double EmittedPower::of(const Sphere& sphere) const {
 }
 
 double EmittedPower::of(const Quad& quad) const {
-    const auto material_id = static_cast<std::size_t>(quad.material_id);
-    const double area = quad.edge_u.cross(quad.edge_v).norm();
-    return mean_radiance_[material_id] * area * (scene_.materials[material_id].front_only ? 1 : 2);
+    return of_flat(quad.material_id, quad.edge_u.cross(quad.edge_v).norm());
+}
+
+double EmittedPower::of(const MeshShape& mesh, double area) const {
+    return of_flat(mesh.material_id, area);
+}
+
+double EmittedPower::of_flat(std::int32_t material_id, double area) const {
+    const auto material = static_cast<std::size_t>(material_id);
+    return mean_radiance_[material] * area * (scene_.materials[material].front_only ? 1 : 2);
 }
 
 double EmittedPower::of(const Background& background) const {

@@ -8,8 +8,8 @@
 namespace raypool {
 
 /// Power in the unit of radiance times that of length squared, pi left out: area times mean radiance, for both sides of
-/// a quad unless its front alone shines, and for the outside of a sphere. 0 of what is no emitter. The mean is over a
-/// texture's cells or texels and over channels, and is taken once for each material.
+/// a quad or triangle unless its front alone shines, and for the outside of a sphere. 0 of what is no emitter. The mean
+/// is over a texture's cells or texels and over channels, and is taken once for each material.
 class EmittedPower {
   public:
     /// The scene outlives it.
@@ -17,10 +17,14 @@ class EmittedPower {
 
     [[nodiscard]] double of(const Sphere& sphere) const;
     [[nodiscard]] double of(const Quad& quad) const;
+    /// Of a triangle of a mesh whose area is `area`.
+    [[nodiscard]] double of(const MeshShape& mesh, double area) const;
     /// What the image of a background, if there is one, sends through the sphere around all shapes that have an end.
     [[nodiscard]] double of(const Background& background) const;
 
   private:
+    [[nodiscard]] double of_flat(std::int32_t material_id, double area) const;
+
     const Scene& scene_;
     std::vector<double> mean_radiance_;  ///< by material
 };

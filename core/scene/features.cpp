@@ -48,7 +48,10 @@ Features scene_features(const Scene& scene) {
     for (const Plane& plane : scene.planes) add_material(plane.material_id);
     features.environment = scene.background.image != nullptr;
     features.lights |= power.of(scene.background) > 0;
-    for (const MeshShape& mesh : scene.meshes) add_material(mesh.material_id);
+    for (const MeshShape& mesh : scene.meshes) {
+        add_material(mesh.material_id);
+        features.lights |= power.of(mesh, 1) > 0;
+    }
     features.triangles = !scene.meshes.empty();
     features.planar = !scene.quads.empty() || !scene.planes.empty() || features.triangles;
     features.defocus = scene.camera.defocus_angle_degrees > 0;

@@ -15,17 +15,17 @@
 namespace raypool {
 
 struct Features {
-    bool motion = false;       ///< a sphere moves while the shutter is open: rays carry a time
-    bool defocus = false;      ///< the lens has an area
-    bool planar = false;       ///< quads, planes or triangles
-    bool triangles = false;    ///< meshes
-    bool metal = false;        ///< mirrors
-    bool fuzz = false;         ///< mirrors that are not perfect
-    bool dielectric = false;   ///< glass
-    bool emissive = false;     ///< surfaces that shine
-    bool checker = false;      ///< 3-D checkers
-    bool uv = false;           ///< textures that need surface coordinates: uv checkers and images
-    bool lights = false;       ///< emissive quads or spheres, or an image around the scene: light sampling is possible
+    bool motion = false;      ///< a sphere moves while the shutter is open: rays carry a time
+    bool defocus = false;     ///< the lens has an area
+    bool planar = false;      ///< quads, planes or triangles
+    bool triangles = false;   ///< meshes
+    bool metal = false;       ///< mirrors
+    bool fuzz = false;        ///< mirrors that are not perfect
+    bool dielectric = false;  ///< glass
+    bool emissive = false;    ///< surfaces that shine
+    bool checker = false;     ///< 3-D checkers
+    bool uv = false;          ///< textures that need surface coordinates: uv checkers and images
+    bool lights = false;      ///< emissive shapes with an end, or an image around the scene: light sampling is possible
     bool environment = false;  ///< the background is an image
 
     bool operator==(const Features&) const = default;

@@ -51,27 +51,35 @@ RAYPOOL_INLINE SurfacePoint<Real> surface_point(const Ray<Real>& ray, const Real
     return point;
 }
 
+/// Makes of a mesh's SurfaceRow that of a triangle, by its normal and id, where `is_here`.
+template <class Real>
+RAYPOOL_INLINE void put_triangle(const Mask<Real>& is_here, const Vec3<Real>& outward, const Int<Real>& primitive_id,
+                                 Real* row) {
+    using Row = SurfaceRow<ScalarOf<Real>>;
+    for (int i = 0; i < 3; ++i) row[Row::kCenter + i] = select(is_here, outward[i], row[Row::kCenter + i]);
+    row[Row::kRadius] = select(is_here, PlanarMark<Real>::make(primitive_id), row[Row::kRadius]);
+}
+
 /// Loads the SurfaceRow of the primitives that rays met: of a triangle that of its mesh, with its own normal and mark.
 template <Features features, class Real>
 RAYPOOL_INLINE TrianglePoint<Real> load_surface(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray,
-                                                const Int<Real>& primitive_id, Int<Real>& surface_id, Real* row) {
+                                                const Int<Real>& primitive_id, Real* row) {
     using Row = SurfaceRow<ScalarOf<Real>>;
     TrianglePoint<Real> triangle;
-    surface_id = primitive_id;
     if constexpr (features.triangles) triangle.is_here = as_mask<Real>(primitive_id >= Int<Real>(scene.first_triangle));
     if (!features.triangles || none(triangle.is_here)) {
         load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, primitive_id, row);
         return triangle;
     }
     Vec3<Real> outward;
+    Int<Real> surface_id;
     if constexpr (Simd<Real>) {
         load_triangle<features, Real>(scene, ray, primitive_id, triangle, outward, surface_id);
     } else {
         call_load_triangle<features, Real>(scene, ray, primitive_id, triangle, outward, surface_id);
     }
     load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns, surface_id, row);
-    for (int i = 0; i < 3; ++i) row[Row::kCenter + i] = select(triangle.is_here, outward[i], row[Row::kCenter + i]);
-    row[Row::kRadius] = select(triangle.is_here, PlanarMark<Real>::make(primitive_id), row[Row::kRadius]);
+    put_triangle<Real>(triangle.is_here, outward, primitive_id, row);
     return triangle;
 }
 

@@ -1,16 +1,31 @@
 #include "core/shading/light_table.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/triangles.h"
 #include "core/math/vec.h"
 #include "core/scene/emission.h"
 #include "core/shading/alias_table.h"
 
 namespace raypool {
+
+namespace {
+
+/// Where rays meet them: rounded, so that areas are those of what is met.
+template <class Scalar>
+std::array<Vec3<Scalar>, 3> placed_vertices(const MeshShape& shape, std::size_t triangle) {
+    std::array<Vec3<Scalar>, 3> vertices;
+    for (std::size_t i = 0; i < 3; ++i)
+        vertices[i] = shape.placed(shape.mesh->positions[shape.mesh->triangles[triangle][i]]).template cast<Scalar>();
+    return vertices;
+}
+
+}  // namespace
 
 template <class Scalar>
 LightTable<Scalar> light_table(const Scene& scene, const std::vector<bool>& is_hidden) {
@@ -48,6 +63,26 @@ LightTable<Scalar> light_table(const Scene& scene, const std::vector<bool>& is_h
         set(row, Row::kEdgeU, quad.edge_u);
         set(row, Row::kEdgeV, quad.edge_v);
     }
+    std::size_t count = is_hidden.size();
+    bool is_counted = false;  ///< triangles have weights
+    for (const MeshShape& shape : scene.meshes) {
+        const std::size_t first = count;
+        count += shape.mesh->triangles.size();
+        is_counted |= scene.materials[static_cast<std::size_t>(shape.material_id)].kind == Material::Kind::Emissive;
+        if (emitted.of(shape, 1) == 0) continue;
+        for (std::size_t i = 0; i < shape.mesh->triangles.size(); ++i) {
+            const std::array<Vec3<Scalar>, 3> vertex = placed_vertices<Scalar>(shape, i);
+            if (!triangle_normal<Scalar>(vertex).allFinite()) continue;
+            const Vector3d point = vertex[0].template cast<double>();
+            const Vector3d edge_u = vertex[1].template cast<double>() - point;
+            const Vector3d edge_v = vertex[2].template cast<double>() - point;
+            const double area = edge_u.cross(edge_v).norm() / 2;
+            Row& row = add(static_cast<std::int64_t>(first + i), emitted.of(shape, area), area);
+            set(row, Row::kPoint, point);
+            set(row, Row::kEdgeU, edge_u);
+            set(row, Row::kEdgeV, edge_v);
+        }
+    }
     if (const double power = emitted.of(scene.background); power > 0) add(kNoPrimitive, power, 1);
     if (table.rows.empty()) return table;
 
@@ -55,7 +90,7 @@ LightTable<Scalar> light_table(const Scene& scene, const std::vector<bool>& is_h
     for (double& power : powers) power /= sum;
     const std::vector<AliasEntry> entries = alias_table(powers);
     const std::vector<double> chosen = alias_chances(entries, draw_chances<Scalar>(entries.size()));
-    table.weights.resize(is_hidden.size() + scene.meshes.size());
+    table.weights.resize(is_counted ? count : is_hidden.size());
     for (std::size_t i = 0; i < table.rows.size(); ++i) {
         Row& row = table.rows[i];
         row.value[Row::kThreshold] = static_cast<Scalar>(entries[i].threshold);

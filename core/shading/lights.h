@@ -1,9 +1,9 @@
 /// Where lights are, seen from a point: a direction toward one is sampled, and the density of a direction is known.
 ///
-/// A light is chosen by its power. Of a quad a point is sampled by area; of a sphere a direction by solid angle, within
-/// the cone that it fills (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations",
-/// 1996), and all around where the point is in it. Of an image around the scene the direction is drawn by its
-/// brightness (environment.h).
+/// A light is chosen by its power. Of a quad or triangle a point is sampled by area; of a sphere a direction by solid
+/// angle, within the cone that it fills (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting
+/// Calculations", 1996), and all around where the point is in it. Of an image around the scene the direction is drawn
+/// by its brightness (environment.h).
 #pragma once
 
 #include <numbers>
@@ -37,6 +37,13 @@ struct LightSample {
     [[nodiscard]] RAYPOOL_INLINE Mask<Real> is_environment() const {
         return features.environment ? as_mask<Real>(primitive_id == Int<Real>(kNoPrimitive)) : Mask<Real>(false);
     }
+};
+
+/// What is read of the surface of a light that was sampled: its SurfaceRow, and where on it if it is a triangle.
+template <class Real>
+struct LightSurface {
+    Real row[SurfaceRow<ScalarOf<Real>>::kColumns];
+    TrianglePoint<Real> triangle;
 };
 
 namespace detail {
@@ -83,11 +90,12 @@ RAYPOOL_INLINE Real light_density(const Ray<Real>& ray, const Real& t, const Rea
 }
 
 /// Samples a light, of a scene that has some, from where a ray starts, at `time`, by a block of RandomPurpose::Light.
-/// The light's SurfaceRow, which emitted_radiance() and light_density() read, is put into `row`. Where the light is the
-/// image around the scene, sample_environment() says the rest: here it is not seen, and the row is some row.
+/// Where the light is the image around the scene, sample_environment() says the rest: here it is not seen, and
+/// `surface` is that of something.
 template <Features features, class Real>
 RAYPOOL_INLINE LightSample<Real> sample_light(const SceneView<ScalarOf<Real>>& scene, const RayStart<Real>& start,
-                                              const Real& time, const std::array<Real, 4>& random, Real* row) {
+                                              const Real& time, const std::array<Real, 4>& random,
+                                              LightSurface<Real>& surface) {
     using S = ScalarOf<Real>;
     using Light = LightRow<S>;
     using Row = SurfaceRow<S>;
@@ -102,8 +110,14 @@ RAYPOOL_INLINE LightSample<Real> sample_light(const SceneView<ScalarOf<Real>>& s
     LightSample<Real> sample;
     sample.primitive_id = bits_of<Real>(light[Light::kPrimitive]);
     const Mask<Real> is_around = sample.template is_environment<features>();
+    Real* row = surface.row;
+    TrianglePoint<Real>& triangle = surface.triangle;
+    if constexpr (features.triangles)
+        triangle.is_here = as_mask<Real>(sample.primitive_id >= Int<Real>(scene.first_triangle));
+    const bool has_triangles = features.triangles && any(triangle.is_here);
+    const auto id_or_0 = [&](const Mask<Real>& is_none) { return select(is_none, Int<Real>(0), sample.primitive_id); };
     const Int<Real> row_id =
-        features.environment ? select(is_around, Int<Real>(0), sample.primitive_id) : sample.primitive_id;
+        features.environment || features.triangles ? id_or_0(is_around || triangle.is_here) : sample.primitive_id;
     detail::load_light_rows<Row::kColumns, Real>(scene.surfaces.data()->value, row_id, row);
     const auto part = [&](int first) { return vec3<Real>(light[first], light[first + 1], light[first + 2]); };
     const Real radius = light[Light::kRadius];
@@ -120,13 +134,32 @@ RAYPOOL_INLINE LightSample<Real> sample_light(const SceneView<ScalarOf<Real>>& s
     sample.t = Real(kInfinity<Real>);
     sample.is_front = Mask<Real>(false);
     if (!all(is_sphere || is_around)) {
-        const Vec3<Real> across = along<Real>(to, random[1], part(Light::kEdgeU));
-        const Vec3<Real> point = along<Real>(across, random[2], part(Light::kEdgeV));
+        // Of a triangle those of the parallelogram's points that lie beyond it are turned back into it.
+        const Mask<Real> is_beyond = triangle.is_here && random[1] + random[2] > Real(1);
+        const Vec3<Real> across =
+            along<Real>(to, select(is_beyond, Real(1) - random[1], random[1]), part(Light::kEdgeU));
+        const Vec3<Real> point =
+            along<Real>(across, select(is_beyond, Real(1) - random[2], random[2]), part(Light::kEdgeV));
         const Mask<Real> is_apart = !is_sphere && dot<Real>(point, point) > Real(0);
         sample.direction = unit<Real>(select<Real>(is_apart, point, sample.direction));
+        Real met_triangle(kInfinity<Real>);
+        if (has_triangles) {
+            Vec3<Real> outward;
+            Int<Real> surface_id;
+            const TriangleWeights<Real> weights = load_triangle<features, Real>(
+                scene, {origin, sample.direction, time}, sample.primitive_id, triangle, outward, surface_id);
+            Real of_mesh[Row::kColumns];
+            load_rows<Row::kColumns, Real>(scene.surfaces.data()->value, Row::kColumns,
+                                           select(triangle.is_here, surface_id, row_id), of_mesh);
+            for (int i = 0; i < Row::kColumns; ++i) row[i] = select(triangle.is_here, of_mesh[i], row[i]);
+            put_triangle<Real>(triangle.is_here, outward, sample.primitive_id, row);
+            const Real t = weights.height / weights.determinant;
+            met_triangle = select(is_apart && t > Real(0), t, met_triangle);
+        }
         const Vec3<Real> normal = vec3<Real>(row[Row::kCenter], row[Row::kCenter + 1], row[Row::kCenter + 2]);
         const Vec3<Real> plane = vec3<Real>(row[Row::kMotion], row[Row::kMotion + 1], row[Row::kMotion + 2]);
-        const Real met = plane_distance<Real>(origin, sample.direction, plane, normal, is_leaving || !is_apart);
+        Real met = plane_distance<Real>(origin, sample.direction, plane, normal, is_leaving || !is_apart);
+        if (has_triangles) met = select(triangle.is_here, met_triangle, met);
         // By the plane, as a hit is measured; by the point where the origin lies in the plane but for rounding.
         const Real apart = sqrt(dot<Real>(point, point));
         const Mask<Real> is_grazing = met < Real(kInfinity<Real>) && !(abs(met - apart) <= Real(S(1e-3)) * apart);
@@ -159,16 +192,18 @@ RAYPOOL_INLINE LightSample<Real> sample_light(const SceneView<ScalarOf<Real>>& s
     return sample;
 }
 
-/// What a light sends toward where the ray of a sample starts. `row` is the light's SurfaceRow.
+/// What a light sends toward where the ray of a sample starts.
 template <Features features, class Real>
 RAYPOOL_INLINE Vec3<Real> emitted_radiance(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray,
-                                           const LightSample<Real>& light, const Real* row,
+                                           const LightSample<Real>& light, const LightSurface<Real>& surface,
                                            const Mask<Real>& is_wanted) {
+    const Real* row = surface.row;
     const SurfaceCode<Int<Real>> code{bits_of<Real>(row[SurfaceRow<ScalarOf<Real>>::kCode])};
-    const SurfacePoint<Real> point = surface_point<features, Real>(ray, light.t, row);
+    SurfacePoint<Real> point = surface_point<features, Real>(ray, light.t, row);
+    if constexpr (features.triangles) surface.triangle.place(point);
     const SurfaceMaterial<features, Real> material{code.material(), row[SurfaceRow<ScalarOf<Real>>::kParameter]};
     const Vec3<Real> colour =
-        surface_colour<features, Real>(scene, point, TrianglePoint<Real>(), light.primitive_id, row, code, is_wanted);
+        surface_colour<features, Real>(scene, point, surface.triangle, light.primitive_id, row, code, is_wanted);
     const Real emission = material.emission(light.is_front);
     return vec3<Real>(colour[0] * emission, colour[1] * emission, colour[2] * emission);
 }

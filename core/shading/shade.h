@@ -77,22 +77,22 @@ template <Features features, class Real>
 [[gnu::noinline]] RAYPOOL_HOST_DEVICE LightSample<Real> call_sample_light(const SceneView<ScalarOf<Real>>& scene,
                                                                           const RayStart<Real>& start, const Real& time,
                                                                           const std::array<Real, 4>& random,
-                                                                          Real* row) {
-    return sample_light<features, Real>(scene, start, time, random, row);
+                                                                          LightSurface<Real>& surface) {
+    return sample_light<features, Real>(scene, start, time, random, surface);
 }
 
 /// Weighs what is found on a light by chance, and samples a light where a surface has a density. Weights are shares of
 /// what either technique would bring alone: no part of a path brings more than throughput times radiance.
 template <Features features, class Real>
 RAYPOOL_INLINE void share_with_lights(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray, const Real& t,
-                                      const Int<Real>& surface_id, const Real* row, const PathKey<Real>& key,
+                                      const Int<Real>& primitive_id, const Real* row, const PathKey<Real>& key,
                                       const Uint32<Real>& step, const RandomSeed& seed, const SurfacePoint<Real>& point,
                                       const SurfaceMaterial<features, Real>& material, LightPart<Real>& lights,
                                       Scattered<Real>& out) {
-    using Row = SurfaceRow<ScalarOf<Real>>;
     const bool is_shared = lights.sampling == LightSampling::Mis;
     if (any(out.is_emitter && lights.arriving_density > Real(0))) {
-        const Real weight = detail::gather<Real>(scene.light_weights.data(), surface_id);
+        const Int<Real> emitter_id = select(out.is_emitter, primitive_id, Int<Real>(0));
+        const Real weight = detail::gather<Real>(scene.light_weights.data(), emitter_id);
         const Mask<Real> is_sampled = out.is_emitter && lights.arriving_density > Real(0) && weight > Real(0);
         const Real density = light_density<features, Real>(ray, t, weight, row);
         const Real share = is_shared ? lights.arriving_density / (lights.arriving_density + density) : Real(0);
@@ -107,12 +107,12 @@ RAYPOOL_INLINE void share_with_lights(const SceneView<ScalarOf<Real>>& scene, co
                             bsdf_density<features, Real>(point, material, ray.direction, out.direction), Real(0));
     if (none(lights.has_shadow_ray)) return;
 
-    Real light_row[Row::kColumns];
+    LightSurface<Real> surface;
     const std::array<Real, 4> random = random_block<Real>(key, step, RandomPurpose::Light, seed);
     if constexpr (Simd<Real>) {
-        lights.light = sample_light<features, Real>(scene, out.start, ray.time, random, light_row);
+        lights.light = sample_light<features, Real>(scene, out.start, ray.time, random, surface);
     } else {
-        lights.light = call_sample_light<features, Real>(scene, out.start, ray.time, random, light_row);
+        lights.light = call_sample_light<features, Real>(scene, out.start, ray.time, random, surface);
     }
     LightSample<Real>& light = lights.light;
     const Mask<Real> is_around = light.template is_environment<features>();
@@ -135,10 +135,10 @@ RAYPOOL_INLINE void share_with_lights(const SceneView<ScalarOf<Real>>& scene, co
         const Int<Real> id =
             features.environment ? select(is_around, Int<Real>(0), light.primitive_id) : light.primitive_id;
         const Real weight = detail::gather<Real>(scene.light_weights.data(), id);
-        of_light = select(is_around, of_light, light_density<features, Real>(shadow_ray, light.t, weight, light_row));
+        of_light = select(is_around, of_light, light_density<features, Real>(shadow_ray, light.t, weight, surface.row));
         radiance = select<Real>(
             is_around, radiance,
-            emitted_radiance<features, Real>(scene, shadow_ray, light, light_row, lights.has_shadow_ray && !is_around));
+            emitted_radiance<features, Real>(scene, shadow_ray, light, surface, lights.has_shadow_ray && !is_around));
     }
     const Real share = density / (is_shared ? of_light + density : of_light);
     for (int i = 0; i < 3; ++i) lights.radiance[i] = out.throughput[i] * (radiance[i] * share);
@@ -158,8 +158,7 @@ RAYPOOL_INLINE Scattered<Real> scatter(const SceneView<ScalarOf<Real>>& scene, c
                                        [[maybe_unused]] LightPart<Real>* lights = nullptr) {
     using Row = SurfaceRow<ScalarOf<Real>>;
     Real row[Row::kColumns];
-    Int<Real> surface_id;
-    const TrianglePoint<Real> triangle = load_surface<features, Real>(scene, ray, primitive_id, surface_id, row);
+    const TrianglePoint<Real> triangle = load_surface<features, Real>(scene, ray, primitive_id, row);
     const SurfaceCode<Int<Real>> code{bits_of<Real>(row[Row::kCode])};
     SurfacePoint<Real> point = surface_point<features, Real>(ray, t, row);
     if constexpr (features.triangles) triangle.place(point);
@@ -191,8 +190,8 @@ RAYPOOL_INLINE Scattered<Real> scatter(const SceneView<ScalarOf<Real>>& scene, c
     out.direction = sample.direction;
     if constexpr (features.lights) {
         if (lights != nullptr && lights->sampling != LightSampling::None)
-            share_with_lights<features, Real>(scene, ray, t, surface_id, row, key, step, seed, point, material, *lights,
-                                              out);
+            share_with_lights<features, Real>(scene, ray, t, primitive_id, row, key, step, seed, point, material,
+                                              *lights, out);
     }
     if constexpr (splitting == Splitting::On) out.reflected_origin = out.start.origin;
     if constexpr (features.triangles && features.dielectric) {

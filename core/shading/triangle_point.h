@@ -24,11 +24,11 @@ struct TrianglePoint {
 };
 
 /// Of the lanes in `triangle.is_here`, of which there are some: the rest of it, and its normal and the row of its mesh
-/// among the surfaces.
+/// among the surfaces. Says where the rays meet its plane.
 template <Features features, class Real>
-RAYPOOL_INLINE void load_triangle(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray,
-                                  const Int<Real>& primitive_id, TrianglePoint<Real>& triangle, Vec3<Real>& outward,
-                                  Int<Real>& surface_id) {
+RAYPOOL_INLINE TriangleWeights<Real> load_triangle(const SceneView<ScalarOf<Real>>& scene, const Ray<Real>& ray,
+                                                   const Int<Real>& primitive_id, TrianglePoint<Real>& triangle,
+                                                   Vec3<Real>& outward, Int<Real>& surface_id) {
     using S = ScalarOf<Real>;
     using Triangle = TriangleRow<S>;
     Real columns[Triangle::kColumns];
@@ -54,6 +54,7 @@ RAYPOOL_INLINE void load_triangle(const SceneView<ScalarOf<Real>>& scene, const 
     }
     triangle.error = triangle_error<Real>(vertex);
     outward = triangle_normal<Real>(vertex);
+    return weights;
 }
 
 /// The same by a call: a recursion has its frame at every depth, and needs none of the temporaries there.

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "tests/meshes.h"
 #include "tests/physics/light_renders.h"
 
 namespace raypool {
@@ -81,6 +82,26 @@ constexpr Case kCases[] = {
          s.textures.back().scale = 0.25;
          s.materials.back().strength = 1.5;
          s.quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, lamp);
+     }},
+    {"shining_mesh",
+     [](TestScene& s) {
+         s.mesh(test::icosphere(1), s.emitter(3), 0.6, {0, 1.4, 0});
+     }},
+    {"mirrored_mesh_of_one_side",
+     [](TestScene& s) {
+         s.mesh(test::icosphere(0), s.emitter(3), -0.5, {-1, 1.4, 0});
+         s.materials.back().front_only = true;
+     }},
+    {"mesh_with_a_checker",
+     [](TestScene& s) {
+         const std::int32_t lamp = s.emitter(4);
+         s.textures.back().kind = Texture::Kind::CheckerUv;
+         s.textures.back().scale = 0.25;
+         Mesh mesh;
+         mesh.positions = {{-1, 2, -1}, {1, 2.5, -1}, {1, 2, 1}, {-1, 2, 1}};
+         mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+         mesh.uv = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+         s.mesh(std::move(mesh), lamp);
      }},
     {"mirror_and_glass",
      [](TestScene& s) {

@@ -38,6 +38,13 @@ struct TestScene : Scene {
     void quad(const Vector3d& corner, const Vector3d& edge_u, const Vector3d& edge_v, std::int32_t material) {
         quads.push_back({corner, edge_u, edge_v, material});
     }
+    void mesh(Mesh triangles, std::int32_t material, double scale = 1, const Vector3d& offset = Vector3d::Zero()) {
+        MeshShape shape{std::make_shared<const Mesh>(std::move(triangles))};
+        shape.transform.leftCols<3>() *= scale;
+        shape.transform.col(3) = offset;
+        shape.material_id = material;
+        meshes.push_back(std::move(shape));
+    }
 
   private:
     std::int32_t add(Material::Kind kind, double grey) {

@@ -10,6 +10,7 @@
 #include "core/geometry/traverse.h"
 #include "core/scene/emission.h"
 #include "tests/core/math/lane_agreement.h"
+#include "tests/meshes.h"
 #include "tests/physics/agreement.h"
 #include "tests/physics/test_scene.h"
 
@@ -33,15 +34,29 @@ TEST(LightTable, SaysWithWhichProbabilityEachLightIsChosenWhichIsItsShareOfThePo
         }
     }
     scene.plane({0, -20, 0}, {0, 1, 0}, scene.emitter(3));
+    scene.mesh(triangle_soup(10, random), grey);
+    scene.mesh(triangle_soup(30, random), scene.emitter(0.02));
     const EmittedPower emitted(scene);
     std::vector<double> power;
     for (const Sphere& sphere : scene.spheres) power.push_back(emitted.of(sphere));
     for (const Quad& quad : scene.quads) power.push_back(emitted.of(quad));
     power.push_back(0);  // of the plane
+    std::vector<double> areas(power.size(), 1.0);
+    for (std::size_t i = 0; i < scene.quads.size(); ++i)
+        areas[scene.spheres.size() + i] = scene.quads[i].edge_u.cross(scene.quads[i].edge_v).norm();
+    const std::vector<bool> is_hidden(power.size());
+    for (const MeshShape& mesh : scene.meshes) {
+        for (const auto& triangle : mesh.mesh->triangles) {
+            std::array<Vector3d, 3> at;
+            for (std::size_t i = 0; i < 3; ++i) at[i] = mesh.placed(mesh.mesh->positions[triangle[i]]);
+            areas.push_back((at[1] - at[0]).cross(at[2] - at[0]).norm() / 2);
+            power.push_back(emitted.of(mesh, areas.back()));
+        }
+    }
     const double sum = std::accumulate(power.begin(), power.end(), 0.0);
 
     using Row = LightRow<float>;
-    const LightTable<float> table = light_table<float>(scene, std::vector<bool>(power.size()));
+    const LightTable<float> table = light_table<float>(scene, is_hidden);
     const auto primitive = [&](std::size_t i) {
         return static_cast<std::size_t>(bits_of<float>(table.rows[i].value[Row::kPrimitive]));
     };
@@ -61,10 +76,7 @@ TEST(LightTable, SaysWithWhichProbabilityEachLightIsChosenWhichIsItsShareOfThePo
     ASSERT_EQ(table.weights.size(), power.size());
     for (std::size_t id = 0; id < power.size(); ++id) {
         EXPECT_NEAR(chosen[id], power[id] / sum, 1e-5) << id;
-        const bool is_quad = id >= scene.spheres.size() && id + 1 < power.size();
-        const Quad* quad = is_quad ? &scene.quads[id - scene.spheres.size()] : nullptr;
-        const double area = is_quad ? quad->edge_u.cross(quad->edge_v).norm() : 1;
-        EXPECT_NEAR(table.weights[id] * area, chosen[id], 1e-7 * chosen[id]) << id;
+        EXPECT_NEAR(table.weights[id] * areas[id], chosen[id], 1e-7 * chosen[id]) << id;
     }
 }
 
@@ -105,14 +117,14 @@ void expect_solid_angle(const TestScene& scene, const Vector3d& from, double exp
     std::vector<double> angles;
     for (std::uint32_t i = 0; i < 20000; ++i) {
         const std::array<Scalar, 4> random = random_block<Scalar>({1, i}, 0, RandomPurpose::Light, random_seed(0));
-        Scalar row[SurfaceRow<Scalar>::kColumns];
-        const LightSample<Scalar> sample = sample_light<kEverything, Scalar>(compiled, start, 0, random, row);
+        LightSurface<Scalar> surface;
+        const LightSample<Scalar> sample = sample_light<kEverything, Scalar>(compiled, start, 0, random, surface);
         ASSERT_EQ(sample.primitive_id, 0);
         ASSERT_NEAR(sample.direction.norm(), 1, 1e-6);
         ASSERT_LT(sample.t, kInfinity<Scalar>);
         const Ray<Scalar> ray{start.origin, sample.direction, 0};
-        angles.push_back(
-            1 / static_cast<double>(light_density<kEverything, Scalar>(ray, sample.t, compiled.light_weights[0], row)));
+        angles.push_back(1 / static_cast<double>(light_density<kEverything, Scalar>(
+                                 ray, sample.t, compiled.light_weights[0], surface.row)));
         // The light is where it is said to be.
         NoTestCount work;
         const Hit<Scalar> hit = closest_hit<kEverything>(compiled, ray, kNoPrimitive, work);
@@ -142,6 +154,17 @@ TYPED_TEST(LightDirections, FillTheAngleOfAQuad) {
     }
 }
 
+TYPED_TEST(LightDirections, FillTheAngleOfATriangle) {
+    const Vector3d a(-1, 2, -0.5), b(1, 2.25, -0.5), c(-0.5, 2.125, 2.5);
+    Mesh mesh;
+    mesh.positions = {{-1, 2, -0.5}, {1, 2.25, -0.5}, {-0.5, 2.125, 2.5}};
+    mesh.triangles = {{0, 1, 2}};
+    TestScene scene(1, 1, Vector3d::Zero());
+    scene.mesh(std::move(mesh), scene.emitter(1));
+    for (const Vector3d& from : {Vector3d(0, 0, 0), Vector3d(3, 1, -2), Vector3d(-0.3, 1.75, 0.4)})
+        expect_solid_angle<TypeParam>(scene, from, solid_angle(a - from, b - from, c - from));
+}
+
 TYPED_TEST(LightDirections, FillTheAngleOfASphere) {
     constexpr double kPi = std::numbers::pi;
     TestScene scene(1, 1, Vector3d::Zero());
@@ -168,15 +191,15 @@ TEST(LightDirections, AreNoneWithinThePlaneOfTheLight) {
     TestScene scene(1, 1, Vector3d::Zero());
     scene.quad({1, 0, 0}, {1, 0, 0}, {0, 0, 1}, scene.emitter(1));
     const CompiledScene<float> compiled = compile<float>(scene);
-    float row[SurfaceRow<float>::kColumns];
+    LightSurface<float> surface;
     const RayStart<float> start{vec3<float>(0, 0, 0.5F), 0};  // leaves a shape in the same plane
     for (std::uint32_t i = 0; i < 100; ++i) {
         const auto random = random_block<float>({1, i}, 0, RandomPurpose::Light, random_seed(0));
-        EXPECT_EQ((sample_light<kEverything, float>(compiled, start, 0, random, row).t), kInfinity<float>);
+        EXPECT_EQ((sample_light<kEverything, float>(compiled, start, 0, random, surface).t), kInfinity<float>);
     }
 }
 
-/// Quads, spheres and moving spheres, from anywhere: inside, beside and far.
+/// Quads, triangles, spheres and moving spheres, from anywhere: inside, beside and far.
 template <class Scalar, class... Reals>
 void expect_lanes_agree_on_lights() {
     RandomInputs inputs(3);
@@ -191,6 +214,7 @@ void expect_lanes_agree_on_lights() {
             scene.quad(inputs.point<double>(3), inputs.point<double>(1), inputs.point<double>(1), lamp);
         }
     }
+    scene.mesh(triangle_soup(40, inputs), scene.emitter(1));
     const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
     expect_lanes_agree_for<Scalar, Reals...>(
         kInputs / 8,
@@ -207,13 +231,13 @@ void expect_lanes_agree_on_lights() {
             start.leaving_id = in.index();
             const std::array<Real, 4> random =
                 random_block<Real>({Uint32<Real>(0U), sample}, Uint32<Real>(0U), RandomPurpose::Light, random_seed(0));
-            Real row[SurfaceRow<Scalar>::kColumns];
-            const LightSample<Real> light = sample_light<kEverything, Real>(compiled, start, time, random, row);
+            LightSurface<Real> surface;
+            const LightSample<Real> light = sample_light<kEverything, Real>(compiled, start, time, random, surface);
             const Ray<Real> ray{start.origin, light.direction, time};
             const Mask<Real> is_seen = light.t < Real(kInfinity<Real>);
             out(light.direction), out(light.t);
-            out(select(is_seen, light_density<kEverything, Real>(ray, light.t, Real(1), row), Real(0)));
-            out(select<Real>(is_seen, emitted_radiance<kEverything, Real>(compiled, ray, light, row, is_seen),
+            out(select(is_seen, light_density<kEverything, Real>(ray, light.t, Real(1), surface.row), Real(0)));
+            out(select<Real>(is_seen, emitted_radiance<kEverything, Real>(compiled, ray, light, surface, is_seen),
                              ray.origin));
         });
 }
