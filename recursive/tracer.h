@@ -139,9 +139,11 @@ class Tracer {
             lights.arriving_density = path.density;
             lights.depth = depth_;
         }
-        const Scattered<Scalar> out = scatter<features, Scalar, splitting>(
-            scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key, path.step, seed(), split_depth_,
-            rules == Rules::Any && roulette_, features.lights ? &lights : nullptr);
+        // What is no triangle does not pay for what triangles need. (With lights there would be too much code.)
+        constexpr bool kIsApart = features.triangles && !features.lights;
+        const Scattered<Scalar> out = kIsApart && hit.primitive_id < scene_.first_triangle
+                                          ? scatter_by<without_triangles(features)>(path, hit, lights)
+                                          : scatter_by<features>(path, hit, lights);
         if constexpr (features.lights) {
             if (lights.has_shadow_ray) follow_shadow_ray(path, out, lights);
         }
@@ -166,6 +168,13 @@ class Tracer {
             }
         }
         return out.is_alive ? Next::OnePath : Next::End;
+    }
+
+    template <Features code>
+    RAYPOOL_INLINE Scattered<Scalar> scatter_by(const Path& path, const Hit<Scalar>& hit, LightPart<Scalar>& lights) {
+        return scatter<code, Scalar, splitting>(scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key,
+                                                path.step, seed(), split_depth_, rules == Rules::Any && roulette_,
+                                                features.lights ? &lights : nullptr);
     }
 
     /// The sampler of plain rules is known to the compiler.

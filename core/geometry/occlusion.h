@@ -64,7 +64,10 @@ template <Features features, class Scalar, class Work>
         if (!light.is_hidden) detail::walk<features, Real>(scene.quad_tree, spread, light, work);
     }
     if constexpr (features.triangles) {
-        if (!light.is_hidden) detail::walk<features, Real>(scene.triangle_tree, spread, light, work);
+        if (!light.is_hidden && !scene.triangle_tree.nodes.empty())
+            light = detail::walk_apart<Real>(ray, leaving_id, light, [&](const SpreadRay<Real>& apart, auto& found) {
+                detail::walk<features, Real>(scene.triangle_tree, apart, found, work);
+            });
     }
     if (!light.is_hidden) detail::walk<features, Real>(scene.sphere_tree, spread, light, work);
     return light.is_hidden;

@@ -267,6 +267,14 @@ RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tr
     }
 }
 
+/// Walks a tree by a call, with a spread ray of its own: scenes in which it is empty pay nothing for it. What
+/// walk(ray, found) makes of `found` is returned.
+template <class Real, class Found, class Walk>
+[[gnu::noinline]] Found walk_apart(const Ray<ScalarOf<Real>>& ray, std::int32_t leaving_id, Found found, Walk walk) {
+    walk(SpreadRay<Real>(ray, ray_inverse<ScalarOf<Real>>(ray.direction), leaving_id), found);
+    return found;
+}
+
 }  // namespace detail
 
 /// `leaving_id` is what the ray starts on (RayStart::leaving_id), or kNoPrimitive.
@@ -278,7 +286,12 @@ template <Features features, class Scalar, class Work>
     Hit<Scalar> hit;
     detail::test_untreed<features, Real>(scene, spread, hit, work);
     if constexpr (features.planar) detail::walk<features, Real>(scene.quad_tree, spread, hit, work);
-    if constexpr (features.triangles) detail::walk<features, Real>(scene.triangle_tree, spread, hit, work);
+    if constexpr (features.triangles) {
+        if (!scene.triangle_tree.nodes.empty())
+            hit = detail::walk_apart<Real>(ray, leaving_id, hit, [&](const SpreadRay<Real>& apart, auto& found) {
+                detail::walk<features, Real>(scene.triangle_tree, apart, found, work);
+            });
+    }
     detail::walk<features, Real>(scene.sphere_tree, spread, hit, work);
     return hit;
 }

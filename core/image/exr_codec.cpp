@@ -69,7 +69,10 @@ std::int64_t check_part(const Imf::Header& header, std::int64_t channel_count, s
     } else {
         chunk_count = height / rows_of_block(header);
     }
-    if (header.hasChunkCount()) chunk_count = std::max<std::int64_t>(chunk_count, header.chunkCount());
+    if (header.hasChunkCount()) {
+        if (header.chunkCount() < 0) throw std::runtime_error("the number of chunks must not be negative");
+        chunk_count = std::max<std::int64_t>(chunk_count, header.chunkCount());
+    }
     const std::int64_t most_values = std::max(kMaxExrBlockValues, kMaxExrExpansion * file_bytes);
     if (block_width * channel_count * rows_of_block(header) > most_values)
         throw std::runtime_error(

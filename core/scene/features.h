@@ -72,6 +72,11 @@ std::vector<std::string> feature_names(const Features& features);
 
 inline constexpr Features kEverything{true, true, true, true, true, true, true, true, true, true, true, true};
 
+constexpr Features without_triangles(Features features) {
+    features.triangles = false;
+    return features;
+}
+
 /// All but light sampling.
 inline constexpr Features kAllButLights{true, true, true, true, true, true, true, true, true, true, false, true};
 
