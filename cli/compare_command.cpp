@@ -23,6 +23,7 @@
 
 #ifdef RAYPOOL_HAS_EMBREE
 #include "bench/peers/embree_engine.h"
+#include "bench/peers/mean_difference.h"
 #endif
 
 namespace raypool::cli {
@@ -35,6 +36,8 @@ constexpr bool kIsDebugBuild = false;
 constexpr bool kIsDebugBuild = true;
 #endif
 
+constexpr const char* kChanges = "changes";  // in place of a hash: from run to run
+
 struct CompareOptions : CommonOptions {
     std::int64_t spp = 32;
     int repeats = 5;
@@ -42,35 +45,47 @@ struct CompareOptions : CommonOptions {
     std::string json;
 };
 
+/// How the image of an engine is held to that of the first.
+enum class Check : std::uint8_t {
+    SameImage,
+    SameButForEdges,  ///< of a peer, whose traversal may lose a hit at the edge of a shape
+    SameMean,         ///< of a peer that has tests of shapes of its own
+};
+
 /// One row of the table.
 struct Contender {
     std::string name;
     std::string step;
-    std::shared_ptr<Engine> engine;
-    bool is_peer;         ///< has a traversal that is not ours, which may lose a hit at the edge of a shape
-    nlohmann::json pool;  ///< null where there is none
-    std::string hash;
-    std::vector<double> rate;   ///< M paths/s, one a repeat
-    std::vector<double> ratio;  ///< to the recursive engine in the same repeat
+    std::shared_ptr<const Engine> engine;
+    Check check;
+    nlohmann::json pool;                 ///< null where there is none
+    std::unique_ptr<Framebuffer> image;  ///< of the last run, where more than the hash is looked at
+    std::string hash;                    ///< or what there is to say in its place
+    std::vector<double> rate;            ///< M paths/s, one a repeat
+    std::vector<double> ratio;           ///< to the recursive engine in the same repeat
     RenderReport last;
 };
 
 /// The engines, and the peers that this build knows of where they can carry out the settings.
-std::vector<Contender> contenders(const RenderSettings& settings) {
+std::vector<Contender> contenders([[maybe_unused]] const CompiledScene<float>& scene, const RenderSettings& settings) {
     std::vector<Contender> list;
-    const auto add = [&](std::string name, std::string step, const std::shared_ptr<Engine>& engine, nlohmann::json pool,
-                         bool is_peer = false) {
-        list.push_back({std::move(name), std::move(step), engine, is_peer, std::move(pool), {}, {}, {}, {}});
+    const auto add = [&](std::string name, std::string step, const std::shared_ptr<const Engine>& engine,
+                         nlohmann::json pool, Check check = Check::SameImage) {
+        list.push_back({std::move(name), std::move(step), engine, check, std::move(pool), {}, {}, {}, {}, {}});
     };
     for (const EngineEntry& entry : engines().entries())  // pools come below, a rung each
         if (!entry.has_pool) add(entry.name, entry.description, entry.make({}), nullptr);
     for (const wavefront::Rung& rung : wavefront::ladder(settings.threads))
         add(rung.name, rung.step, std::make_shared<wavefront::WavefrontEngine>(rung.pool), to_json(rung.pool));
 #ifdef RAYPOOL_HAS_EMBREE
-    if (settings.split_depth == 0 && settings.light_sampling == LightSampling::None) {
-        for (const auto rays : {peers::EmbreeRays::Single, peers::EmbreeRays::Packet}) {
-            const auto engine = std::make_shared<peers::EmbreeEngine>(rays);
-            add(engine->name(), "the traversal of Embree 3 with our physics", engine, nullptr, true);
+    if (settings.split_depth == 0) {
+        for (const auto& engine : peers::embree_engines(scene)) {
+            if (engine->is_independent(scene)) {
+                add(engine->name(), "the triangles and the traversal of Embree 3", engine, nullptr, Check::SameMean);
+            } else {
+                add(engine->name(), "the traversal of Embree 3 with our physics", engine, nullptr,
+                    Check::SameButForEdges);
+            }
         }
     }
 #endif
@@ -83,9 +98,10 @@ double load_imbalance(const RenderReport& report) {
 }
 
 std::string run_once(Contender& contender, const CompiledScene<float>& scene, const RenderSettings& settings) {
-    Framebuffer framebuffer(scene.width, scene.height, fixed_point(scene, settings, settings.end_sample));
-    contender.last = contender.engine->render(scene, settings, framebuffer);
-    return framebuffer.hash();
+    contender.image =
+        std::make_unique<Framebuffer>(scene.width, scene.height, fixed_point(scene, settings, settings.end_sample));
+    contender.last = contender.engine->render(scene, settings, *contender.image);
+    return contender.image->hash();
 }
 
 /// Runs all once, by another stride each turn, so that no contender always follows the same other.
@@ -96,20 +112,21 @@ void run_all(std::vector<Contender>& list, std::size_t turn, const CompiledScene
     for (std::size_t i = 0; i < list.size(); ++i) {
         Contender& contender = list[(turn + i * stride) % list.size()];
         const std::string hash = run_once(contender, scene, settings);
+        if (contender.check != Check::SameMean && &contender != &list.front()) contender.image.reset();
         if (contender.hash.empty()) contender.hash = hash;
-        if (contender.hash != hash) contender.hash = "changes";
+        if (contender.hash != hash) contender.hash = kChanges;
         contender.rate.push_back(static_cast<double>(contender.last.paths()) / contender.last.seconds * 1e-6);
     }
     for (Contender& contender : list) contender.ratio.push_back(contender.rate.back() / list.front().rate.back());
 }
 
 void print_table(const std::vector<Contender>& list) {
-    print("{:<14} {:>9} {:>22} {:>9} {:>8} {:>7} {:>9}  {}\n", "engine", "M paths/s", "ratio (low to high)", "load",
+    print("{:<18} {:>9} {:>22} {:>9} {:>8} {:>7} {:>9}  {}\n", "engine", "M paths/s", "ratio (low to high)", "load",
           "waiting", "bytes", "pools", "hash");
     for (const Contender& contender : list) {
         const studies::Spread rate = studies::spread(contender.rate);
         const studies::Spread ratio = studies::spread(contender.ratio);
-        print("{:<14} {:>9.2f} {:>6.2f} ({:>5.2f} to {:>5.2f}) {:>9.3f} {:>6.1f} % {:>7} {:>6.2f} MB  {}\n",
+        print("{:<18} {:>9.2f} {:>6.2f} ({:>5.2f} to {:>5.2f}) {:>9.3f} {:>6.1f} % {:>7} {:>6.2f} MB  {}\n",
               contender.name, rate.median, ratio.median, ratio.low, ratio.high, load_imbalance(contender.last),
               100 * studies::waiting(contender.last), wavefront::pool_report(contender.last).record_bytes,
               static_cast<double>(contender.last.memory_bytes) / (1024 * 1024), contender.hash);
@@ -138,6 +155,47 @@ nlohmann::json table_json(const std::vector<Contender>& list) {
     return rows;
 }
 
+/// Whether all images are what they must be, and whether all of one hash.
+struct Checked {
+    bool is_good = true;
+    bool loses_hits = false;  ///< a peer does, at edges
+    bool has_other = false;   ///< a peer has an image of its own
+};
+
+/// Puts what there is to say of an image in place of a hash that is not that of the first.
+Checked check(std::vector<Contender>& list) {
+    Checked checked;
+    const Contender& first = list.front();
+    for (Contender& contender : list) {
+        const bool is_equal = contender.hash == first.hash && contender.last.segments() == first.last.segments();
+#ifdef RAYPOOL_HAS_EMBREE
+        if (contender.check == Check::SameMean) {
+            const peers::MeanDifference off = peers::mean_difference(*contender.image, *first.image);
+            contender.hash = fmt::format("mean {:+.1e} ({:+.1f} standard errors), {:.2g} % of pixels differ",
+                                         off.relative, off.standard_errors, 100 * off.differing_pixels);
+            checked.has_other = true;
+            checked.is_good = checked.is_good && off.is_noise();
+            continue;
+        }
+#endif
+        if (contender.check == Check::SameButForEdges && !is_equal && contender.hash != kChanges) {
+            contender.hash = "differs";
+            checked.loses_hits = true;
+        } else {
+            checked.is_good = checked.is_good && is_equal;
+        }
+    }
+    return checked;
+}
+
+std::string verdict(const Checked& checked) {
+    if (!checked.is_good) return "THE IMAGES DIFFER";
+    std::string text = "all images are the same";
+    if (checked.loses_hits) text += " but Embree's, which loses hits at edges (docs/pool.md)";
+    if (checked.has_other) text += "; those of Embree's own triangles have the same mean, to four standard errors";
+    return text;
+}
+
 int compare(const CompareOptions& options) {
     if (kIsDebugBuild && !options.only_check)
         throw InputError("compare: a debug build does not time; build in Release, or add --check");
@@ -150,37 +208,24 @@ int compare(const CompareOptions& options) {
     const CompiledScene<float> compiled = compile<float>(scene);
     settings.light_sampling = needed_light_sampling(compiled.features, settings);
 
-    std::vector<Contender> list = contenders(settings);
+    std::vector<Contender> list = contenders(compiled, settings);
     const int repeats = options.only_check ? 1 : options.repeats;
     for (int i = 0; i < repeats; ++i) run_all(list, static_cast<std::size_t>(i), compiled, settings);
 
-    bool is_same = true;
-    bool has_other_peer = false;
-    for (Contender& contender : list) {
-        const bool is_equal =
-            contender.hash == list.front().hash && contender.last.segments() == list.front().last.segments();
-        if (contender.is_peer && !is_equal && contender.hash != "changes") {
-            contender.hash = "differs";
-            has_other_peer = true;
-        } else {
-            is_same = is_same && is_equal;
-        }
-    }
+    const Checked checked = check(list);
     print("{}: {} x {}, {} spp, depth {}, {} thread{}, {} interleaved run{}\n", scene.name, scene.width, scene.height,
           options.spp, settings.depth, settings.threads, settings.threads == 1 ? "" : "s", repeats,
           repeats == 1 ? "" : "s");
     if (options.only_check) {
         for (const Contender& contender : list)
-            print("{:<14} {} {} segments\n", contender.name, contender.hash, contender.last.segments());
-    } else if (is_same) {
+            print("{:<18} {} {} segments\n", contender.name, contender.hash, contender.last.segments());
+    } else if (checked.is_good) {
         print_table(list);
     } else {  // a figure of a wrong image is not worth printing
-        for (const Contender& contender : list) print("{:<14} {}\n", contender.name, contender.hash);
+        for (const Contender& contender : list) print("{:<18} {}\n", contender.name, contender.hash);
     }
-    print("{}\n", !is_same         ? "THE IMAGES DIFFER"
-                  : has_other_peer ? "all images are the same but Embree's, which loses hits at edges (docs/pool.md)"
-                                   : "all images are the same");
-    if (!options.json.empty() && is_same) {
+    print("{}\n", verdict(checked));
+    if (!options.json.empty() && checked.is_good) {
         nlohmann::json table{{"scene", scene.name},
                              {"width", scene.width},
                              {"height", scene.height},
@@ -197,7 +242,7 @@ int compare(const CompareOptions& options) {
         if (has_grain(settings.schedule)) table["grain"] = to_string(settings.grain);
         write_json(options.json, table);
     }
-    return is_same ? 0 : 1;
+    return checked.is_good ? 0 : 1;
 }
 
 }  // namespace

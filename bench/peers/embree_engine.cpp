@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "bench/peers/embree_scene.h"
 #include "core/base/error.h"
 #include "core/shading/shade.h"
 #include "recursive/render.h"
@@ -196,8 +195,8 @@ using SingleTracer =
 using MakeTracer = decltype(recursive::TracerMaker<float>::make);
 
 template <Features features, recursive::Rules rules>
-MakeTracer single_tracers(const CompiledScene<float>& scene) {
-    const auto embree = std::make_shared<EmbreeScene>(scene, ShapeFunctions::make<features, float>());
+MakeTracer single_tracers(const CompiledScene<float>& scene, EmbreeTriangles triangles) {
+    const auto embree = std::make_shared<EmbreeScene>(scene, ShapeFunctions::make<features, float>(), triangles);
     return [embree](const CompiledScene<float>& of, const RenderSettings& settings, Framebuffer& framebuffer) {
         return std::make_unique<SingleTracer<features, rules>>(of, settings, framebuffer,
                                                                EmbreeSearch{{}, embree.get()});
@@ -205,8 +204,8 @@ MakeTracer single_tracers(const CompiledScene<float>& scene) {
 }
 
 template <Features features>
-MakeTracer packet_tracers(const CompiledScene<float>& scene) {
-    const auto embree = std::make_shared<EmbreeScene>(scene, ShapeFunctions::make<features, Packet>());
+MakeTracer packet_tracers(const CompiledScene<float>& scene, EmbreeTriangles triangles) {
+    const auto embree = std::make_shared<EmbreeScene>(scene, ShapeFunctions::make<features, Packet>(), triangles);
     return [embree](const CompiledScene<float>& of, const RenderSettings& settings, Framebuffer& framebuffer) {
         return std::make_unique<PacketTracer<features>>(of, settings, framebuffer, *embree);
     };
@@ -220,9 +219,9 @@ std::unique_ptr<RenderSession> EmbreeEngine::begin(const CompiledScene<float>& s
     if (settings.count_work) throw InputError(name() + ": Embree does not say which boxes it tests");
     if (settings.cost_image != nullptr) throw InputError(name() + ": has no cost of a pixel");
     const MakeTracer make = dispatch_features(needed_features(scene.features, settings), [&]<Features features>() {
-        if (rays_ == EmbreeRays::Packet) return packet_tracers<features>(scene);
-        return recursive::are_plain(settings) ? single_tracers<features, recursive::Rules::Plain>(scene)
-                                              : single_tracers<features, recursive::Rules::Any>(scene);
+        if (rays_ == EmbreeRays::Packet) return packet_tracers<features>(scene, triangles_);
+        return recursive::are_plain(settings) ? single_tracers<features, recursive::Rules::Plain>(scene, triangles_)
+                                              : single_tracers<features, recursive::Rules::Any>(scene, triangles_);
     });
     return std::make_unique<recursive::Session<float>>(scene, settings, framebuffer,
                                                        recursive::TracerMaker<float>{make, nullptr});
@@ -231,6 +230,16 @@ std::unique_ptr<RenderSession> EmbreeEngine::begin(const CompiledScene<float>& s
 std::unique_ptr<RenderSession> EmbreeEngine::begin(const CompiledScene<double>&, const RenderSettings&,
                                                    Framebuffer&) const {
     throw InputError(name() + ": Embree traces in single precision");
+}
+
+std::vector<std::shared_ptr<const EmbreeEngine>> embree_engines(const CompiledScene<float>& scene) {
+    std::vector<std::shared_ptr<const EmbreeEngine>> engines;
+    for (const auto triangles : {EmbreeTriangles::Ours, EmbreeTriangles::Embrees}) {
+        if (triangles == EmbreeTriangles::Embrees && scene.triangles.empty()) break;
+        for (const auto rays : {EmbreeRays::Single, EmbreeRays::Packet})
+            engines.push_back(std::make_shared<const EmbreeEngine>(rays, triangles));
+    }
+    return engines;
 }
 
 }  // namespace raypool::peers

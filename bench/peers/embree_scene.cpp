@@ -1,6 +1,9 @@
 #include "bench/peers/embree_scene.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "core/geometry/node_motion.h"
@@ -56,6 +59,13 @@ float greatest_coordinate(const Shapes<Block>& shapes) {
     return reach;
 }
 
+float greatest_coordinate(std::span<const VertexRow<float>> vertices) {
+    float reach = 0;
+    for (const VertexRow<float>& vertex : vertices)
+        for (int axis = 0; axis < 3; ++axis) reach = std::max(reach, std::abs(vertex.value[axis]));
+    return reach;
+}
+
 template <class Block>
 void set_bounds(const RTCBoundsFunctionArguments* args) {
     const auto& shapes = *static_cast<const Shapes<Block>*>(args->geometryUserPtr);
@@ -71,26 +81,47 @@ void set_bounds(const RTCBoundsFunctionArguments* args) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions& functions)
-    : device_(rtcNewDevice("threads=1,set_affinity=0")) {
+EmbreeScene::EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions& functions, EmbreeTriangles triangles)
+    : first_triangle_(scene.first_triangle), device_(rtcNewDevice("threads=1,set_affinity=0")) {
     if (!device_) throw std::runtime_error("Embree found no device");
     scene_.reset(rtcNewScene(device_.get()));
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
     add(scene.sphere_tree.blocks, spheres_);
     add(scene.quad_tree.blocks, quads_);
-    add(scene.triangle_tree.blocks, triangles_);
+    if (triangles == EmbreeTriangles::Ours) add(scene.triangle_tree.blocks, triangles_);
     // Embree 3 has no robust box test for user geometries, whatever the flags of a scene. The one that it has takes
     // products with the coordinates of a ray's origin, whose rounding is as if a box moved by an ulp of them; a box
     // that moves has five more (node_motion.h). So boxes leave room for both, of whatever rays start on but planes and
     // large spheres.
     const float reach = std::max({scene.camera.origin.cwiseAbs().maxCoeff(), greatest_coordinate(spheres_),
-                                  greatest_coordinate(quads_), greatest_coordinate(triangles_)});
+                                  greatest_coordinate(quads_), greatest_coordinate(scene.vertices)});
     spheres_.room = quads_.room = triangles_.room = 8 * std::numeric_limits<float>::epsilon() * reach;
     attach(spheres_, scene.features.motion, functions.sphere);
     attach(quads_, false, functions.quad);
     attach(triangles_, false, functions.triangle);
+    if (triangles == EmbreeTriangles::Embrees) attach_triangles(scene);
     rtcCommitScene(scene_.get());
     if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree refused the scene");
+}
+
+/// All in one geometry, so that primID counts as ids do. Those in no tree, which have no area, become points.
+void EmbreeScene::attach_triangles(const CompiledScene<float>& scene) {
+    if (scene.triangles.empty()) return;
+    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+    vertex_ids_.resize(scene.triangles.size());
+    for (const auto& block : scene.triangle_tree.blocks) {
+        wavefront::for_each_shape(block, [&](int lane) {
+            const auto number = static_cast<std::size_t>(block.id[lane] - first_triangle_);
+            for (std::size_t i = 0; i < 3; ++i)
+                vertex_ids_[number][i] = std::bit_cast<std::uint32_t>(scene.triangles[number].value[i]);
+        });
+    }
+    const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene.vertices.data(), 0,
+                               sizeof(VertexRow<float>), scene.vertices.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, vertex_ids_.data(), 0,
+                               sizeof(vertex_ids_[0]), vertex_ids_.size());
+    finish(geometry);
 }
 
 template <class Block>
@@ -103,6 +134,10 @@ void EmbreeScene::attach(Shapes<Block>& shapes, bool can_move, const ShapeFuncti
     rtcSetGeometryBoundsFunction(geometry, set_bounds<Block>, nullptr);
     rtcSetGeometryIntersectFunction(geometry, functions.intersect);
     rtcSetGeometryOccludedFunction(geometry, functions.occlude);
+    finish(geometry);
+}
+
+void EmbreeScene::finish(RTCGeometry geometry) {
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_.get(), geometry);
     rtcReleaseGeometry(geometry);

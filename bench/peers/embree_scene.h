@@ -1,11 +1,13 @@
 /// A compiled scene in Embree 3: the shapes of our trees as user geometries, which Embree's traversal leads to and our
-/// kernels test. Large spheres and planes, which are in no tree, are tested before, as every engine does.
+/// kernels test; triangles, if one likes, as Embree's own. Large spheres and planes, which are in no tree, are tested
+/// before, as every engine does.
 ///
 /// Called by the tracers of bench/peers/. Immutable once made, and safe to trace from several threads.
 #pragma once
 
 #include <embree3/rtcore.h>
 
+#include <array>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -19,14 +21,56 @@ namespace raypool::peers {
 /// A packet: as many rays as fill a register, 16 with AVX-512, else 8.
 using Packet = stdx::native_simd<float>;
 
-/// Embree's rays and their hits, of a float or a Packet. Of the hit, primID is used: the id of the closest primitive.
+/// Whose test finds the hits on triangles.
+enum class EmbreeTriangles : bool {
+    Ours,     ///< user geometries, as all other shapes: every hit is ours, to the bit
+    Embrees,  ///< RTC_GEOMETRY_TYPE_TRIANGLE in a robust scene: watertight, and distances are rounded in another way
+};
+
+/// What Embree has for so many rays at a time: its structures, and its calls.
+template <int lanes>
+struct EmbreeCalls;
+template <>
+struct EmbreeCalls<1> {
+    using RayHit = RTCRayHit;
+    using ShadowRay = RTCRay;
+    static void trace(const int*, RTCScene scene, RTCIntersectContext* context, RayHit* ray) {
+        rtcIntersect1(scene, context, ray);
+    }
+    static void trace(const int*, RTCScene scene, RTCIntersectContext* context, ShadowRay* ray) {
+        rtcOccluded1(scene, context, ray);
+    }
+};
+template <>
+struct EmbreeCalls<8> {
+    using RayHit = RTCRayHit8;
+    using ShadowRay = RTCRay8;
+    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, RayHit* rays) {
+        rtcIntersect8(valid, scene, context, rays);
+    }
+    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, ShadowRay* rays) {
+        rtcOccluded8(valid, scene, context, rays);
+    }
+};
+template <>
+struct EmbreeCalls<16> {
+    using RayHit = RTCRayHit16;
+    using ShadowRay = RTCRay16;
+    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, RayHit* rays) {
+        rtcIntersect16(valid, scene, context, rays);
+    }
+    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, ShadowRay* rays) {
+        rtcOccluded16(valid, scene, context, rays);
+    }
+};
+
+/// Embree's rays and their hits, of a float or a Packet. Of a hit, primID and geomID are used: that of Embree's own
+/// triangles with the number of one, or else none with the id of a primitive.
 template <class Real>
-using RayHit =
-    std::conditional_t<kLanes<Real> == 1, RTCRayHit, std::conditional_t<kLanes<Real> == 16, RTCRayHit16, RTCRayHit8>>;
+using RayHit = typename EmbreeCalls<kLanes<Real>>::RayHit;
 /// Its rays toward lights.
 template <class Real>
-using ShadowRay =
-    std::conditional_t<kLanes<Real> == 1, RTCRay, std::conditional_t<kLanes<Real> == 16, RTCRay16, RTCRay8>>;
+using ShadowRay = typename EmbreeCalls<kLanes<Real>>::ShadowRay;
 
 /// A field of these as the kernels take it.
 template <class T>
@@ -46,6 +90,10 @@ struct Query {
     wavefront::WideRays<Real> rays;
     Hit<Real> light{};  ///< of shadow rays: what they are to reach
 };
+
+/// geomID of rays that met nothing, or a shape that our kernels test.
+inline constexpr std::int32_t kNoGeometry = -1;
+static_assert(kNoGeometry == static_cast<std::int32_t>(RTC_INVALID_GEOMETRY_ID));
 
 /// Spheres, quads or triangles, each a block by itself, so that a test reads a line or two of the cache.
 template <class Block>
@@ -92,6 +140,8 @@ struct ShapeFunctions {
         if (none(is_closer)) return;
         set(rayhit.ray.tfar, select(is_closer, hit.t, t));
         set(rayhit.hit.primID, hit.primitive_id);
+        const auto geometry = get<Int<Real>>(rayhit.hit.geomID);
+        set(rayhit.hit.geomID, select(is_closer, Int<Real>(kNoGeometry), geometry));
     }
 
     /// Whether a shape hides the lights of the shadow rays that Embree says are valid: that of `Occlusion`, for a
@@ -114,9 +164,10 @@ struct ShapeFunctions {
     }
 };
 
+/// Embree reads the vertices of the compiled scene, which outlives this, where triangles are its own.
 class EmbreeScene {
   public:
-    EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions& functions);
+    EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions& functions, EmbreeTriangles triangles);
     EmbreeScene(const EmbreeScene&) = delete;  // Embree points into it
     EmbreeScene& operator=(const EmbreeScene&) = delete;
     ~EmbreeScene() = default;
@@ -125,51 +176,41 @@ class EmbreeScene {
     template <class Real>
     RAYPOOL_INLINE Hit<Real> closest(Query<Real>& query, const Hit<Real>& hit, const Int<Real>& valid) const {
         RayHit<Real> rayhit;
-        start<Real>(query, hit.t, rayhit.ray);
         set(rayhit.hit.primID, hit.primitive_id);
-        alignas(64) std::int32_t is_valid[kLanes<Real>];
-        set(is_valid, valid);
-        if constexpr (kLanes<Real> == 1) {
-            rtcIntersect1(scene_.get(), &query.context, &rayhit);
-        } else if constexpr (kLanes<Real> == 16) {
-            rtcIntersect16(is_valid, scene_.get(), &query.context, &rayhit);
-        } else {
-            rtcIntersect8(is_valid, scene_.get(), &query.context, &rayhit);
-        }
-        return {get<Real>(rayhit.ray.tfar), get<Int<Real>>(rayhit.hit.primID)};
+        set(rayhit.hit.geomID, Int<Real>(kNoGeometry));
+        trace<Real>(query, hit.t, valid, rayhit, rayhit.ray);
+        const Mask<Real> is_triangle = as_mask<Real>(get<Int<Real>>(rayhit.hit.geomID) != Int<Real>(kNoGeometry));
+        const Int<Real> first = select(is_triangle, Int<Real>(first_triangle_), Int<Real>(0));
+        return {get<Real>(rayhit.ray.tfar), first + get<Int<Real>>(rayhit.hit.primID)};
     }
 
     /// Which of the rays whose `valid` is not 0 meet something before query.light.
     template <class Real>
     RAYPOOL_INLINE Mask<Real> occluded(Query<Real>& query, const Int<Real>& valid) const {
         ShadowRay<Real> ray;
-        start<Real>(query, query.light.t, ray);
-        alignas(64) std::int32_t is_valid[kLanes<Real>];
-        set(is_valid, valid);
-        if constexpr (kLanes<Real> == 1) {
-            rtcOccluded1(scene_.get(), &query.context, &ray);
-        } else if constexpr (kLanes<Real> == 16) {
-            rtcOccluded16(is_valid, scene_.get(), &query.context, &ray);
-        } else {
-            rtcOccluded8(is_valid, scene_.get(), &query.context, &ray);
-        }
+        trace<Real>(query, query.light.t, valid, ray, ray);
         return get<Real>(ray.tfar) < Real(0);
     }
 
   private:
-    /// Sets the rays that Embree is to follow up to `end`.
+    /// Has Embree follow the rays up to `end`. `ray` is those in `to`, or `to` itself.
     template <class Real>
-    RAYPOOL_INLINE static void start(Query<Real>& query, const Real& end, auto& to) {
-        const Ray<Real>& ray = query.rays.ray;
-        set(to.org_x, ray.origin[0]), set(to.dir_x, ray.direction[0]);
-        set(to.org_y, ray.origin[1]), set(to.dir_y, ray.direction[1]);
-        set(to.org_z, ray.origin[2]), set(to.dir_z, ray.direction[2]);
-        set(to.tnear, Real(0)), set(to.tfar, end), set(to.time, ray.time);
-        set(to.mask, Int<Real>(-1)), set(to.flags, Int<Real>(0));
+    RAYPOOL_INLINE void trace(Query<Real>& query, const Real& end, const Int<Real>& valid, auto& to, auto& ray) const {
+        const auto& [origin, direction, time] = query.rays.ray;
+        set(ray.org_x, origin[0]), set(ray.dir_x, direction[0]);
+        set(ray.org_y, origin[1]), set(ray.dir_y, direction[1]);
+        set(ray.org_z, origin[2]), set(ray.dir_z, direction[2]);
+        set(ray.tnear, Real(0)), set(ray.tfar, end), set(ray.time, time);
+        set(ray.mask, Int<Real>(-1)), set(ray.flags, Int<Real>(0));
         rtcInitIntersectContext(&query.context);
+        alignas(64) std::int32_t is_valid[kLanes<Real>];
+        set(is_valid, valid);
+        EmbreeCalls<kLanes<Real>>::trace(is_valid, scene_.get(), &query.context, &to);
     }
+    void attach_triangles(const CompiledScene<float>& scene);
     template <class Block>
     void attach(Shapes<Block>& shapes, bool can_move, const ShapeFunctions::OfKind& functions);
+    void finish(RTCGeometry geometry);
 
     template <auto release>
     struct Release {
@@ -179,6 +220,8 @@ class EmbreeScene {
     Shapes<SphereBlock<float, 1>> spheres_;
     Shapes<PlanarBlock<float, 1>> quads_;
     Shapes<TriangleBlock<float, 1>> triangles_;
+    std::vector<std::array<std::uint32_t, 3>> vertex_ids_;  ///< of Embree's own triangles
+    std::int32_t first_triangle_;
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release<rtcReleaseDevice>> device_;
     std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>> scene_;
 };

@@ -140,7 +140,8 @@ struct HitCount {
 
 HitCount count_hits(const Scene& described, std::int64_t spp) {
     const CompiledScene<float> scene = compile<float>(described);
-    const peers::EmbreeScene embree(scene, peers::ShapeFunctions::make<kEverything, float>());
+    const peers::EmbreeScene embree(scene, peers::ShapeFunctions::make<kEverything, float>(),
+                                    peers::EmbreeTriangles::Ours);
     BothSearches search;
     search.embree = &embree;
     ImageSettings settings;
@@ -247,7 +248,10 @@ TEST(EmbreeEngine, RefusesWhatItHasNot) {
     counting.count_work = true;
     RenderSettings with_cost;
     with_cost.cost_image = &cost;
-    for (const Engine* engine : kEngines) {
+    std::vector<const Engine*> engines = kEngines;
+    const EmbreeEngine of_triangles(EmbreeRays::Single, peers::EmbreeTriangles::Embrees);
+    engines.push_back(&of_triangles);
+    for (const Engine* engine : engines) {
         EXPECT_THROW((void)engine->begin(scene, splitting, framebuffer), InputError);
         EXPECT_THROW((void)engine->begin(scene, counting, framebuffer), InputError);
         EXPECT_THROW((void)engine->begin(scene, with_cost, framebuffer), InputError);
