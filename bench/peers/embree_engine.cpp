@@ -232,10 +232,10 @@ std::unique_ptr<RenderSession> EmbreeEngine::begin(const CompiledScene<double>&,
     throw InputError(name() + ": Embree traces in single precision");
 }
 
-std::vector<std::shared_ptr<const EmbreeEngine>> embree_engines(const CompiledScene<float>& scene) {
+std::vector<std::shared_ptr<const EmbreeEngine>> embree_engines(bool has_meshes) {
     std::vector<std::shared_ptr<const EmbreeEngine>> engines;
     for (const auto triangles : {EmbreeTriangles::Ours, EmbreeTriangles::Embrees}) {
-        if (triangles == EmbreeTriangles::Embrees && scene.triangles.empty()) break;
+        if (triangles == EmbreeTriangles::Embrees && !has_meshes) break;
         for (const auto rays : {EmbreeRays::Single, EmbreeRays::Packet})
             engines.push_back(std::make_shared<const EmbreeEngine>(rays, triangles));
     }

@@ -42,7 +42,7 @@ class EmbreeEngine : public Engine {
     EmbreeTriangles triangles_;
 };
 
-/// Both kinds of rays, with triangles of ours; and, of a scene with meshes, both with Embree's own.
-std::vector<std::shared_ptr<const EmbreeEngine>> embree_engines(const CompiledScene<float>& scene);
+/// Both kinds of rays, with triangles of ours; and for scenes with meshes, both with Embree's own.
+std::vector<std::shared_ptr<const EmbreeEngine>> embree_engines(bool has_meshes);
 
 }  // namespace raypool::peers

@@ -24,7 +24,8 @@ using Packet = stdx::native_simd<float>;
 /// Whose test finds the hits on triangles.
 enum class EmbreeTriangles : bool {
     Ours,     ///< user geometries, as all other shapes: every hit is ours, to the bit
-    Embrees,  ///< RTC_GEOMETRY_TYPE_TRIANGLE in a robust scene: watertight, and distances are rounded in another way
+    Embrees,  ///< RTC_GEOMETRY_TYPE_TRIANGLE in a robust scene: closed along edges, and distances are rounded in
+              ///< another way
 };
 
 /// What Embree has for so many rays at a time: its structures, and its calls.
@@ -88,7 +89,8 @@ template <class Real>
 struct Query {
     RTCIntersectContext context;
     wavefront::WideRays<Real> rays;
-    Hit<Real> light{};  ///< of shadow rays: what they are to reach
+    Hit<Real> light{};                                                       ///< of shadow rays: what they are to reach
+    RTCIntersectContextFlags flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;  ///< how Embree walks with packets
 };
 
 /// geomID of rays that met nothing, or a shape that our kernels test.
@@ -203,6 +205,7 @@ class EmbreeScene {
         set(ray.tnear, Real(0)), set(ray.tfar, end), set(ray.time, time);
         set(ray.mask, Int<Real>(-1)), set(ray.flags, Int<Real>(0));
         rtcInitIntersectContext(&query.context);
+        query.context.flags = query.flags;
         alignas(64) std::int32_t is_valid[kLanes<Real>];
         set(is_valid, valid);
         EmbreeCalls<kLanes<Real>>::trace(is_valid, scene_.get(), &query.context, &to);
@@ -270,12 +273,14 @@ RAYPOOL_INLINE Mask<Packet> are_occluded(const EmbreeScene& embree, const SceneV
            embree.occluded<Packet>(query, select(is_active && !is_hidden, Int<Packet>(-1), Int<Packet>(0)));
 }
 
-/// The closest hits of the rays in `is_active`; those of the others mean nothing.
+/// The closest hits of the rays in `is_active`; those of the others mean nothing. Only of camera rays it pays to say
+/// that they are coherent.
 template <Features features>
 RAYPOOL_INLINE Hit<Packet> closest_hits(const EmbreeScene& embree, const SceneView<float>& scene,
                                         const Ray<Packet>& ray, const Int<Packet>& leaving_id,
-                                        const Mask<Packet>& is_active) {
-    Query<Packet> query{{}, {ray, ray_inverse<Packet>(ray.direction), leaving_id}};
+                                        const Mask<Packet>& is_active,
+                                        RTCIntersectContextFlags flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT) {
+    Query<Packet> query{{}, {ray, ray_inverse<Packet>(ray.direction), leaving_id}, {}, flags};
     Hit<Packet> hit;
     NoTestCount work;
     wavefront::intersect_all<features>(scene.large_spheres, query.rays, kLanes<Packet>, hit, work);

@@ -23,6 +23,7 @@ Study scene_size_study();
 Study schedules_study();
 Study speed_accuracy_study();
 Study stability_study();
+Study traversal_study();
 
 /// In the order in which they are listed to users.
 std::vector<Study> all_studies();

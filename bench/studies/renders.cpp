@@ -87,10 +87,11 @@ void check_threads(int given, int asked) {
 
 Measured measure(const Engine& engine, const StudyScene& scene, const RenderSettings& settings) {
     const CompiledScene<float>& compiled = scene.compiled;
-    Framebuffer framebuffer(compiled.width, compiled.height, fixed_point(compiled, settings, settings.end_sample));
-    RenderReport report = engine.render(compiled, settings, framebuffer);
+    const auto image = std::make_shared<Framebuffer>(compiled.width, compiled.height,
+                                                     fixed_point(compiled, settings, settings.end_sample));
+    RenderReport report = engine.render(compiled, settings, *image);
     check_threads(static_cast<int>(report.threads.size()), settings.threads);
-    return {std::move(report), framebuffer.hash()};
+    return {std::move(report), image->hash(), image};
 }
 
 std::vector<Column> render_columns(const std::vector<Column>& more) {

@@ -72,6 +72,7 @@ Plan plan_of(const StudyOptions& options, Usual spp, Usual repeats, int most_thr
 struct Measured {
     RenderReport report;
     std::string hash;
+    std::shared_ptr<const Framebuffer> image;
 };
 /// Throws InputError unless OpenMP gave as many threads as were asked for: a row of fewer would be of another
 /// experiment.

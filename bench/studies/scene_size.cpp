@@ -1,22 +1,24 @@
 // From which size of scene on a pool beats recursion, and how large it must be: engine by capacity by shapes by depth.
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "bench/studies/cache_counts.h"
-#include "bench/studies/process.h"
+#include "bench/studies/generated_scene.h"
 #include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/statistics.h"
-#include "core/base/scratch_folder.h"
 #include "core/runtime/settings_text.h"
-#include "core/scene/scene_reader.h"
 #include "wavefront/capacity.h"
 #include "wavefront/pool_report.h"
+
+#ifdef RAYPOOL_HAS_EMBREE
+#include "bench/peers/embree_engine.h"
+#include "bench/peers/mean_difference.h"
+#endif
 
 namespace raypool::studies {
 
@@ -31,39 +33,11 @@ constexpr const char* kAutomatic = "automatic";
 constexpr const char* kCounted = "cache misses";
 constexpr const char* kLists = "lists";
 
-/// What the script scenes/generate strews, and scenes/generate_mesh, whose shapes are triangles.
+/// What the script scenes/generate strews, and scenes/generate_mesh.
 constexpr const char* kStrewnKinds[] = {"spheres", "quads", "cluster"};
 constexpr const char* kMeshKinds[] = {"field", "room", "terrain", "blob", "needles"};
 
-bool is_mesh(const std::string& kind) {
-    return std::find(std::begin(kMeshKinds), std::end(kMeshKinds), kind) != std::end(kMeshKinds);
-}
-
-/// A scene of any number of shapes that a script wrote, which goes when this does. Needs python3; throws
-/// std::runtime_error where the script fails.
-class GeneratedScene {
-  public:
-    GeneratedScene(const std::string& kind, std::int64_t shapes) : name_(fmt::format("{} {}", shapes, kind)) {
-        const std::string script =
-            is_mesh(kind)
-                ? own_script(RAYPOOL_INSTALLED_SCENES "/generate_mesh", RAYPOOL_SOURCE_SCENES "/generate_mesh")
-                : own_script(RAYPOOL_INSTALLED_SCENES "/generate", RAYPOOL_SOURCE_SCENES "/generate");
-        if (run_process({kPython, "-B", script, std::to_string(shapes), kind, "-o", path().string()}) != 0)
-            throw std::runtime_error(fmt::format("{} could not make {}", script, name_));
-    }
-    [[nodiscard]] std::filesystem::path path() const { return folder_ / "scene.json"; }
-    [[nodiscard]] Scene read() const {
-        Scene scene = read_scene(path());
-        scene.name = name_;
-        return scene;
-    }
-
-  private:
-    std::string name_;
-    ScratchFolder folder_;
-};
-
-/// The same at a width, compiled.
+/// A generated scene, made when it is wanted.
 struct SizedScene {
     std::string kind;
     std::int64_t shapes;
@@ -71,17 +45,22 @@ struct SizedScene {
     Lazy<std::shared_ptr<const StudyScene>> get;
 
     SizedScene(const std::string& of_kind, std::int64_t of_shapes, std::int64_t wide)
-        : kind(of_kind), shapes(of_shapes), width(wide), get([=] {
-              Scene scene = GeneratedScene(of_kind, of_shapes).read();
-              set_width(scene, wide);
-              return std::make_shared<const StudyScene>(StudyScene{scene.name, compile<float>(scene)});
-          }) {}
+        : kind(of_kind),
+          shapes(of_shapes),
+          width(wide),
+          get([=] { return generated_scene(of_kind, of_shapes, wide); }) {}
 };
 
-/// An engine, by how large its pools are; recursion has none.
+/// An engine, by how large its pools are; recursion and peers have none.
 struct SizedWay {
     std::string name;
     std::optional<PoolSettings> pool;
+    std::shared_ptr<const Engine> peer = nullptr;
+
+    [[nodiscard]] NamedEngine engine() const {
+        if (peer != nullptr) return {name, peer};
+        return pool ? pool_engine("pool", *pool) : recursive_engine();
+    }
 };
 
 /// What a case renders.
@@ -90,9 +69,7 @@ struct SizedRender {
     std::shared_ptr<SizedScene> scene;
     RenderSettings settings;
 
-    [[nodiscard]] Render get() const {
-        return {way.pool ? pool_engine("pool", *way.pool) : recursive_engine(), scene->get(), settings};
-    }
+    [[nodiscard]] Render get() const { return {way.engine(), scene->get(), settings}; }
     /// What every row says; `way_text` begins with what was counted, if anything was.
     [[nodiscard]] Cells cells(const std::string& way_text, const Measured& measured) const {
         const RenderReport& report = measured.report;
@@ -128,6 +105,32 @@ Case sized_case(const std::string& what, const SizedRender& render, int repeats,
 Rows timed_rows(const SizedRender& render) {
     return {render.cells(render.way.name, measure(render.get()))};
 }
+
+#ifdef RAYPOOL_HAS_EMBREE
+/// Embree with our tests of triangles and with its own. Hits need not be ours to the bit: images are checked by their
+/// means.
+void add_peers(std::vector<Case>& cases, const std::shared_ptr<SizedScene>& scene, const RenderSettings& settings,
+               int repeats) {
+    const auto recursion = std::make_shared<Lazy<std::shared_ptr<const Framebuffer>>>([=] {
+        return measure({recursive_engine(), scene->get(), settings}).image;
+    });
+    for (const auto& engine : peers::embree_engines(true)) {
+        const SizedRender render{{engine->name(), std::nullopt, engine}, scene, settings};
+        Case made = sized_case(fmt::format("{}, {} threads", engine->name(), settings.threads), render, repeats, {});
+        made.image.clear();
+        made.run = [=]() -> Rows {
+            const Measured measured = measure(render.get());
+            const peers::MeanDifference off = peers::mean_difference(*measured.image, *(*recursion)());
+            if (!off.is_noise())
+                throw std::runtime_error(
+                    fmt::format("{}, {} triangles: the image of {} is off by {:.1f} standard errors", scene->kind,
+                                scene->shapes, engine->name(), off.standard_errors));
+            return {render.cells(engine->name(), measured)};
+        };
+        cases.push_back(std::move(made));
+    }
+}
+#endif
 
 Rows hardware_rows(const SizedRender& render) {
     const Render made = render.get();  // before anything is counted
@@ -239,6 +242,10 @@ std::vector<Case> scene_size_cases(const StudyOptions& options) {
                                                    {way, scene, settings}, plan.repeats, timed_rows));
                 }
                 settings.threads = 1;
+#ifdef RAYPOOL_HAS_EMBREE
+                // Their trees are built for each render, which takes longer than it.
+                if (is_mesh(kind) && depth == depths(options).back()) add_peers(cases, scene, settings, plan.repeats);
+#endif
                 for (const SizedWay& way : ways) {
                     const SizedRender render{way, scene, settings};
                     if (has_counters)
@@ -269,7 +276,8 @@ Study scene_size_study() {
                   "what was made: spheres, quads or a cluster by scenes/generate, a mesh by scenes/generate_mesh"},
                  {"shapes", ColumnType::Count, "how many; of a mesh about as many triangles"},
                  {"depth", ColumnType::Count, "most segments of a path; 1: camera rays alone"},
-                 {"way", ColumnType::Text, "recursion, a capacity, automatic; cache misses or lists of one of these"},
+                 {"way", ColumnType::Text,
+                  "recursion, a capacity, automatic, or a peer over Embree; cache misses or lists of one of these"},
                  {"capacity", ColumnType::Count, "records of the pool of each thread"},
                  {"tree_bytes", ColumnType::Count, "nodes and leaves of the scene's trees"},
                  {"segments", ColumnType::Count, "rays traced"},

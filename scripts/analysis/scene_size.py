@@ -36,9 +36,9 @@ def panels(rows, label):
         axis.set_xlabel("shapes")
 
 
-def way_ratio(here, way, **more):
-    """Of a way to recursion, over the runs side by side."""
-    return spread(ratios(*(numbers(where(here, way=w, **more), "mpaths_per_s") for w in (way, "recursion"))))
+def way_ratio(here, way, to="recursion", **more):
+    """Of a way to another, over the runs side by side."""
+    return spread(ratios(*(numbers(where(here, way=w, **more), "mpaths_per_s") for w in (way, to))))
 
 
 def ratio(run, rows):
@@ -165,12 +165,34 @@ def lead_finding(rows, threads, depth, least):
                    is_at_least(worst, least), why_open(worst, least))
 
 
+PEERS = [("recursion", "embree-mesh-1"), ("recursion", "embree-1"), ("automatic", "embree-mesh-packet"),
+         ("automatic", "embree-packet")]
+
+
+def add_peers(summary, rows, depth):
+    """Recursion and the default pool over the same path tracer on Embree; nothing where there is none."""
+    meshes = [(scene, here) for scene, here in places(rows, 1, depth) if where(here, way="embree-mesh-packet")]
+    if not meshes:
+        return
+    table = Table(f"Ratio to path tracers over Embree, 1 thread, depth {depth}",
+                  ["scene", *(f"{'pool' if way == 'automatic' else way} to {peer}" for way, peer in PEERS)])
+    table.rows = [[scene, *(text(way_ratio(here, way, peer)) for way, peer in PEERS)] for scene, here in meshes]
+    summary.tables.append(table)
+    least = 1.5
+    found = {scene: way_ratio(here, "automatic", "embree-mesh-packet") for scene, here in meshes}
+    scene, worst = min(found.items(), key=lambda item: item[1].median)
+    summary.findings.append(Finding(
+        f"the default pool is at least {least:g} times as fast as packets over Embree's own triangles at every size",
+        f"least for {scene}: {text(worst)}, 1 thread, depth {depth}", is_at_least(worst, least), why_open(worst, least)))
+
+
 def summarise(run, rows):
     summary = Summary()
     depths = distinct(rows, "depth")
     for threads in distinct(rows, "threads"):
         summary.tables += [ratio_table(rows, threads, depth) for depth in depths]
         summary.findings += [lead_finding(rows, threads, depths[-1], least) for least in (2, 1)]
+    add_peers(summary, rows, depths[-1])
     tables = [table(rows, depth) for depth in depths for table in (list_table, miss_table)]
     summary.tables += [table for table in tables if table.rows]
     summary.pictures = [

@@ -49,6 +49,19 @@ class SceneSizeTest(unittest.TestCase):
             for finding in findings:
                 self.assertIn("100000 spheres", finding.ours)
 
+    def test_judges_the_default_pool_against_packets_over_embree_where_there_are_any(self):
+        for packets, verdict in ((1.0, Verdict.HOLDS), (1.8, Verdict.DOES_NOT_HOLD)):
+            rows = two_sizes(2.1)
+            for way, rate in (("embree-1", 0.5), ("embree-mesh-1", 0.8), ("embree-packet", 0.7), ("embree-mesh-packet", packets)):
+                rows += runs(100_000, way, None, rate)
+            summary = summarise({}, rows)
+            self.assertEqual(summary.findings[-1].verdict, verdict)
+            self.assertIn("100000 spheres", summary.findings[-1].ours)
+            table = summary.tables[-1]
+            self.assertEqual(len(table.rows), 1)
+            self.assertEqual(table.rows[0][:3], ["100000 spheres", "1.25 (1.25 to 1.25)", "2.00 (2.00 to 2.00)"])
+            self.assertEqual(len(table.rows[0]), len(table.header))
+
     def test_tells_cache_misses_only_where_they_were_counted(self):
         rows = two_sizes(2.1)
         self.assertEqual(len(summarise({}, rows).tables), 1)

@@ -56,7 +56,7 @@ class StudyTest(CommandTest):
         self.assertIn("schedules", names)
         for name in names:
             with self.subTest(name):
-                threads = () if name == "ranks" else ("--threads", "2")
+                threads = () if name in ("ranks", "traversal") else ("--threads", "2")
                 self.run_well("study", name, *TINY, *threads, "--quiet", timeout=300)
                 if name == "reproduce":
                     page = (self.folder / "out/reproduce/summary.md").read_text()

@@ -121,6 +121,7 @@ void compare_hits(const Scene& described, double cube, HitDifferences& single, H
     }
 }
 
+// When this was written: 4 of 397,786 hits on the ball, 2 of a million in the room, and 1 of each far apart.
 TEST(EmbreeTriangles, AreMetByAMillionRaysAsOursAre) {
     struct {
         const char* name;
@@ -135,14 +136,14 @@ TEST(EmbreeTriangles, AreMetByAMillionRaysAsOursAre) {
             SCOPED_TRACE(fmt::format("{}, {}: of {} hits {} on another primitive, {} of them far apart; {:.1e} off",
                                      name, of, found.hits, found.other, found.far_apart, found.most_off));
             EXPECT_GT(found.hits, test::kInputs / 10);
-            EXPECT_LE(found.other, 100);
-            EXPECT_LE(found.far_apart, 10);
+            EXPECT_LE(found.other, 20);
+            EXPECT_LE(found.far_apart, 5);
             EXPECT_LE(found.most_off, 1e-3);
         }
     }
 }
 
-// Not so at vertices: Embree lets some 6000 of a million rays through there, and 250,000 in a scene that is not robust.
+// Not so at vertices: Embree lets some 6000 of a million rays through there, and 180,000 in a scene that is not robust.
 TEST(EmbreeTriangles, LetNoRayThroughAtEdges) {
     const Vector3d center(0.3, 0.2, 0.1);
     const Mesh ball = test::icosphere(6);
@@ -197,7 +198,8 @@ TEST(EmbreeTriangles, MakeTheImageOfEveryEngineInASceneWithoutMeshes) {
         EXPECT_FALSE(engine->is_independent(scene));
         EXPECT_TRUE(same_image("embree_no_mesh", expected, render(*engine, scene, settings), engine->name()));
     }
-    EXPECT_EQ(peers::embree_engines(scene).size(), 2U);
+    EXPECT_EQ(peers::embree_engines(false).size(), 2U);
+    EXPECT_EQ(peers::embree_engines(true).size(), 4U);
 }
 
 TEST(EmbreeTriangles, WithoutAnAreaAreNotMet) {
