@@ -157,7 +157,8 @@ class Tracer {
         if constexpr (splitting == Splitting::On) {
             if (out.is_split) {
                 *reflected = after;
-                reflected->ray.origin = out.reflected_origin;
+                reflected->ray.origin = out.reflected_start.origin;
+                reflected->leaving_id = static_cast<std::int32_t>(out.reflected_start.leaving_id);
                 reflected->ray.direction = out.reflected_direction;
                 reflected->throughput = out.reflected_throughput;
                 reflected->step = path_step::reflected_branch(after.step);

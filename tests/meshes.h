@@ -50,6 +50,13 @@ inline Mesh icosphere(int levels) {
     return mesh;
 }
 
+/// The same with the normals of the sphere.
+inline Mesh smooth_icosphere(int levels) {
+    Mesh mesh = icosphere(levels);
+    mesh.normals = mesh.positions;
+    return mesh;
+}
+
 /// A mesh on its own, grey, moved by `offset`.
 inline Scene scene_of(Mesh mesh, const Vector3d& offset = Vector3d::Zero()) {
     Scene scene;

@@ -12,11 +12,11 @@
 
 namespace raypool {
 
-/// A built-in scene, or `textures`, `sky_image` or `solids`, at another width, in its own shape unless a height is
-/// given.
+/// A built-in scene, or `textures`, `sky_image`, `solids` or `smooth`, at another width, in its own shape unless a
+/// height is given.
 inline Scene small_scene(const std::string& name, std::int64_t width, std::int64_t height = 0) {
     const char* const folder = name == "textures" || name == "sky_image" ? "textures/"
-                               : name == "solids"                        ? "meshes/"
+                               : name == "solids" || name == "smooth"    ? "meshes/"
                                                                          : nullptr;
     Scene scene = folder == nullptr ? builtin_scene(name)
                                     : read_scene(RAYPOOL_SOURCE_DIR "/scenes/" + std::string(folder) + name + ".json");

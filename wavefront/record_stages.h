@@ -12,15 +12,24 @@
 #include "core/base/clock.h"
 #include "core/runtime/engine.h"
 #include "core/runtime/loop.h"
+#include "core/shading/interaction.h"
 #include "wavefront/camera_paths.h"
 #include "wavefront/ray_record.h"
 #include "wavefront/round_log.h"
 #include "wavefront/settings.h"
+#include "wavefront/wide_rays.h"
 
 namespace raypool::wavefront {
 
 template <class Scalar>
 class AccumulatorBase;
+
+/// Has the record's ray start where a surface was met.
+template <class Real>
+RAYPOOL_INLINE void set_start(RayRecord<Real>& record, const RayStart<Real>& start) {
+    record.ray.origin = start.origin;
+    record.leaving_id = id_bits<Real>(start.leaving_id);
+}
 
 /// What all threads of a render share.
 template <class Scalar>

@@ -244,14 +244,13 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
                                       Real(static_cast<Scalar>(context_.settings.depth));
         const unsigned alive = mask_bits(out.is_alive && !is_deepest) & hits;
         RayRecord<Real> next = record;
-        next.ray.origin = out.start.origin;
-        next.leaving_id = id_bits<Real>(out.start.leaving_id);
+        set_start(next, out.start);
         next.step = step;
         if constexpr (features.lights) next.density = lights.density;
         if constexpr (splitting == Splitting::On) {
             const Uint32<Real> reflected = path_step::reflected_branch<Uint32<Real>>(step);
             const unsigned alive_too = mask_bits(out.is_reflected_alive && !is_deepest) & hits;
-            next.ray.origin = out.reflected_origin;
+            set_start(next, out.reflected_start);
             next.ray.direction = out.reflected_direction;
             next.throughput = out.reflected_throughput;
             next.step = reflected;
@@ -261,7 +260,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
                                           reflected + Uint32<Real>(1U << path_step::kBranchShift), step);
         }
         if (alive == 0) return 0;
-        if constexpr (splitting == Splitting::On) next.ray.origin = out.start.origin;
+        if constexpr (splitting == Splitting::On) set_start(next, out.start);
         next.ray.direction = out.direction;
         next.throughput = out.throughput;
         records.template append<Real>(target, next, alive, end);

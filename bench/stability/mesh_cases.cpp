@@ -1,4 +1,7 @@
-// Rows 12a and 12b: what passes between the triangles of a closed mesh, and what meets again the mesh that it left.
+// Rows 12a to 12c: what passes between the triangles of a closed mesh, what meets again the mesh that it left, and what
+// a smooth mesh hides from itself.
+
+#include <cmath>
 
 #include <Eigen/Geometry>
 
@@ -107,6 +110,48 @@ constexpr auto kLeaving = []<class Scalar>(const auto& next_hit, double distance
     });
 };
 
+/// A point of a smooth mesh that a ray met.
+template <class Scalar>
+struct SmoothHit {
+    TrianglePoint<Scalar> triangle;
+    SurfacePoint<Scalar> point;
+    RayStart<Scalar> start;
+
+    SmoothHit(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray, const Hit<Scalar>& hit) {
+        Scalar row[SurfaceRow<Scalar>::kColumns];
+        Int<Scalar> surface_id;
+        triangle = load_surface<kEverything, Scalar>(scene, ray, hit.primitive_id, surface_id, row);
+        point = surface_point<kEverything, Scalar>(ray, hit.t, row);
+        triangle.place(point);
+        set_ray_start<kEverything, Scalar>(start, point, triangle, hit.primitive_id, row);
+    }
+};
+
+// Ways to tell whether a point sees a light in some direction.
+constexpr auto kLifted = []<class Scalar>(const CompiledScene<Scalar>& scene, const SmoothHit<Scalar>& at,
+                                          const Vec3<Scalar>& light) {
+    return !at.point.loses(light, false) &&
+           hit_of(scene, at.start.origin, light, static_cast<std::int32_t>(at.start.leaving_id)).primitive_id ==
+               kNoPrimitive;
+};
+constexpr auto kFromThePoint = []<class Scalar>(const CompiledScene<Scalar>& scene, const SmoothHit<Scalar>& at,
+                                                const Vec3<Scalar>& light) {
+    return hit_of(scene, triangle_start<Scalar>(at.point.position, at.triangle, at.point.side()), light, kNoPrimitive)
+               .primitive_id == kNoPrimitive;
+};
+/// Of lights above the horizon of a ball, which hides none of them; triangles have edges of about `edge` of its radius.
+constexpr auto kSelfShadow = []<class Scalar>(const auto& is_seen, double edge, std::int64_t rays) {
+    const int levels = static_cast<int>(std::lround(std::log2(1.0515 / edge)));  // an icosahedron's edge
+    const CompiledScene<Scalar> scene = compile<Scalar>(test::scene_of(test::smooth_icosphere(levels)));
+    return share_of(rays, RandomInputs(123), [&](RandomInputs& random) {
+        const Vec3<Scalar> outside = Scalar(2) * random.direction<Scalar>();
+        const Ray<Scalar> ray{outside, unit<Scalar>(Scalar(0.5) * random.point<Scalar>(1) - outside), 0};
+        const SmoothHit<Scalar> at(scene, ray, hit_of(scene, ray.origin, ray.direction, kNoPrimitive));
+        const Vec3<Scalar> light = random.direction<Scalar>();
+        return light.dot(at.point.position) > 0 && !is_seen(scene, at, light);
+    });
+};
+
 }  // namespace
 
 CaseMethods mesh_cases() {
@@ -114,7 +159,9 @@ CaseMethods mesh_cases() {
             {"mesh-leaving", Methods(kLeaving)
                                  .naive("the triangle's id alone, float", kById)
                                  .naive("least distance 1e-4, float", kLeastDistance)
-                                 .ours_in_both(kOurStart)}};
+                                 .ours_in_both(kOurStart)},
+            {"mesh-terminator",
+             Methods(kSelfShadow).naive("from the point of the triangle, float", kFromThePoint).ours_in_both(kLifted)}};
 }
 
 }  // namespace raypool::stability

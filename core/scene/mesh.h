@@ -21,9 +21,10 @@ struct Mesh {
     using Triangle = std::array<std::uint32_t, 3>;
 
     std::vector<std::array<float, 3>> positions;  ///< x, y, z in the scene's unit of length
-    std::vector<std::array<float, 3>> normals;    ///< of any length; (0, 0, 0) stands for the geometric normal
-    std::vector<std::array<float, 2>> uv;         ///< of any range, as the file has them
-    std::vector<Triangle> triangles;              ///< indices of vertices, counter-clockwise seen from the front
+    /// Of any length. (0, 0, 0) stands for none: a triangle with such a vertex is flat.
+    std::vector<std::array<float, 3>> normals;
+    std::vector<std::array<float, 2>> uv;  ///< of any range, as the file has them
+    std::vector<Triangle> triangles;       ///< indices of vertices, counter-clockwise seen from the front
 
     [[nodiscard]] std::size_t vertex_count() const { return positions.size(); }
     [[nodiscard]] std::size_t triangle_count() const { return triangles.size(); }

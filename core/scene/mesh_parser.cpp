@@ -14,17 +14,23 @@ namespace raypool {
 
 namespace {
 
-std::array<float, 3> float3(const JsonCursor& place) {
-    const Vector3d value = position(place);
+std::array<float, 3> float3(const Vector3d& value) {
     return {static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2])};
 }
 
-/// The keys "vertices" and "triangles", and "uv", which is optional.
+/// Of a key whose array has an entry for each vertex.
+void check_count(const JsonCursor& place, std::size_t vertex_count) {
+    if (place.size() != vertex_count)
+        place.refuse(fmt::format("hold as many as there are vertices, {}", vertex_count),
+                     fmt::format("{}", place.size()));
+}
+
+/// The keys "vertices" and "triangles", and "uv" and "normals", which are optional.
 Mesh inline_mesh(JsonObject& object) {
     Mesh mesh;
     const JsonCursor vertices = object.required("vertices");
     mesh.positions.reserve(vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) mesh.positions.push_back(float3(vertices.item(i)));
+    for (std::size_t i = 0; i < vertices.size(); ++i) mesh.positions.push_back(float3(position(vertices.item(i))));
 
     const JsonCursor triangles = object.required("triangles");
     if (triangles.size() == 0) triangles.refuse("hold a triangle", "none");
@@ -38,9 +44,7 @@ Mesh inline_mesh(JsonObject& object) {
     }
 
     if (const auto uv = object.optional("uv")) {
-        if (uv->size() != vertices.size())
-            uv->refuse(fmt::format("hold as many as there are vertices, {}", vertices.size()),
-                       fmt::format("{}", uv->size()));
+        check_count(*uv, vertices.size());
         for (std::size_t i = 0; i < uv->size(); ++i) {
             const JsonCursor place = uv->item(i);
             constexpr double kMost = 1e6;
@@ -48,6 +52,11 @@ Mesh inline_mesh(JsonObject& object) {
             mesh.uv.push_back({static_cast<float>(place.item(0).number(-kMost, kMost)),
                                static_cast<float>(place.item(1).number(-kMost, kMost))});
         }
+    }
+    if (const auto normals = object.optional("normals")) {
+        check_count(*normals, vertices.size());
+        for (std::size_t i = 0; i < normals->size(); ++i)
+            mesh.normals.push_back(float3(direction(normals->item(i)).normalized()));
     }
     return mesh;
 }

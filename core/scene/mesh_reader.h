@@ -1,13 +1,14 @@
 /// Files of triangle meshes: PLY and Wavefront OBJ, read without trusting them.
 ///
 /// PLY 1.0: ascii, binary_little_endian and binary_big_endian, with properties of any type. Element `vertex` has x, y
-/// and z; it may have nx, ny and nz (all or none), and one of the pairs (u, v), (s, t), (texture_u, texture_v) and
-/// (texture_s, texture_t). Element `face` has one list, vertex_indices or vertex_index. Elements may come in any order.
-/// All other elements and properties are skipped. In an ascii file an element is a line. A vertex keeps its place.
-/// Format: Greg Turk, "The PLY Polygon File Format", 1994.
+/// and z; it may have nx, ny and nz (all or none, and no vertex all zero), and one of the pairs (u, v), (s, t),
+/// (texture_u, texture_v) and (texture_s, texture_t). Element `face` has one list, vertex_indices or vertex_index.
+/// Elements may come in any order. All other elements and properties are skipped. In an ascii file an element is a
+/// line. A vertex keeps its place. Format: Greg Turk, "The PLY Polygon File Format", 1994.
 ///
 /// OBJ: v, vt, vn and f, with relative indices and lines that a \ continues. A vertex is a triple v/vt/vn that some
-/// face uses, in order of first use. Where only some corners have vt or vn, the others get uv (0, 0) and the normal
+/// face uses, in order of first use. Where only some corners have vt, the others get uv (0, 0). Either all corners of a
+/// face have a vn, which is not zero, or none; where only some faces have them, the others' vertices get the normal
 /// (0, 0, 0). An index refers to what the lines above define. Materials, groups, lines and points are skipped, and no
 /// other file is opened. Curves, surfaces and unknown words are refused.
 ///

@@ -79,6 +79,7 @@ class ObjReader {
             while (!text_.at_line_end()) text_.number("a weight or a colour");
         } else if (word == "vn") {
             normals_.push_back({text_.number("x"), text_.number("y"), text_.number("z")});
+            if (normals_.back() == std::array<float, 3>{}) text_.refuse("a normal must not be 0 0 0");
             text_.expect_line_end();
         } else if (word == "vt") {
             uv_.push_back({text_.number("u"), text_.at_line_end() ? 0.0F : text_.number("v")});
@@ -95,18 +96,23 @@ class ObjReader {
 
     void read_face() {
         Mesh::Fan fan(mesh_.triangles);
-        for (; !text_.at_line_end(); fan.add(take_vertex())) {
+        bool has_normals = false;
+        while (!text_.at_line_end()) {
             if (std::max(std::ssize(mesh_.positions), std::ssize(mesh_.triangles)) == kMaxMeshCount) {
                 text_.refuse(fmt::format("there must be at most {} vertices and triangles", kMaxMeshCount));
             }
+            const ObjCorner corner = take_corner();
+            if (fan.corner_count() == 0) has_normals = corner[2] != 0;
+            if (has_normals != (corner[2] != 0)) text_.refuse("all corners of a face must have a vn, or none");
+            fan.add(vertex_of(corner));
         }
         if (fan.corner_count() < 3) {
             text_.refuse(fmt::format("a face must have at least 3 corners, got {}", fan.corner_count()));
         }
     }
 
-    /// v, v/vt, v//vn or v/vt/vn. Returns the vertex of the mesh.
-    std::uint32_t take_vertex() {
+    /// v, v/vt, v//vn or v/vt/vn.
+    ObjCorner take_corner() {
         ObjCorner corner{take_index("v", positions_.size()), 0, 0};
         if (text_.take('/')) {
             if (!text_.take('/')) {
@@ -117,7 +123,11 @@ class ObjReader {
             }
         }
         if (!text_.at_word_end()) text_.refuse("a corner must be v, v/vt, v//vn or v/vt/vn");
+        return corner;
+    }
 
+    /// The vertex of the mesh, which is new at the corner's first use.
+    std::uint32_t vertex_of(const ObjCorner& corner) {
         const auto [vertex, is_new] = corners_.insert(corner);
         if (is_new) {
             mesh_.positions.push_back(positions_[corner[0] - 1]);

@@ -116,6 +116,8 @@ void read_vertices(Source& source, const PlyElement& element, const PlyLayout& l
                 values[static_cast<std::size_t>(value)] = source.number(element.properties[p]);
             }
         }
+        if (layout.has_normals && values[kNormal] == 0 && values[kNormal + 1] == 0 && values[kNormal + 2] == 0)
+            source.refuse("nx, ny and nz must not all be 0");
         source.end();
         mesh.positions.push_back({values[kPosition], values[kPosition + 1], values[kPosition + 2]});
         if (layout.has_normals) mesh.normals.push_back({values[kNormal], values[kNormal + 1], values[kNormal + 2]});

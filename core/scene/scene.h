@@ -112,6 +112,7 @@ struct Plane {
 };
 
 /// A mesh of triangles, placed. A triangle's outward side is the one from which its vertices are seen counterclockwise.
+/// It is smooth where its vertices have normals.
 struct MeshShape {
     std::shared_ptr<const Mesh> mesh;  ///< shared, since scenes are copied
     /// Takes a vertex to its place: a matrix, not singular, and in the last column what is added.
@@ -122,6 +123,8 @@ struct MeshShape {
         const Vector3d p(position[0], position[1], position[2]);
         return transform.leftCols<3>() * p + transform.col(3);
     }
+    /// Takes a normal to its place, but for its length: outward stays outward.
+    [[nodiscard]] Eigen::Matrix3d normal_transform() const { return transform.leftCols<3>().inverse().transpose(); }
     /// Then the order of vertices is seen the other way round.
     [[nodiscard]] bool is_mirrored() const { return transform.leftCols<3>().determinant() < 0; }
 };

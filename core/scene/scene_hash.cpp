@@ -14,6 +14,9 @@ namespace raypool {
 
 namespace {
 
+/// Of meshes with normals: before triangles were smooth, normals were hashed and changed no image.
+constexpr int kSmooth = 1;
+
 class Hasher {
   public:
     Hasher() { XXH3_64bits_reset(state_.get()); }
@@ -74,6 +77,7 @@ class Hasher {
         const auto& [mesh, transform, material_id] = shape;
         const auto& [positions, normals, uv, triangles] = *mesh;
         add_all(positions, normals, uv, triangles, material_id);
+        if (!normals.empty()) add(kSmooth);
         for (int i = 0; i < 12; ++i) add(transform(i / 4, i % 4));
     }
     template <class T>

@@ -19,11 +19,12 @@ enum class Splitting : bool { Off, On };
 template <class Real>
 struct BsdfSample {
     Vec3<Real> direction;    ///< unit; the normal where nothing scatters
-    Mask<Real> is_absorbed;  ///< by a fuzzy mirror: the direction points below its surface
+    Mask<Real> is_absorbed;  ///< the direction of a mirror points below its surface, or SurfacePoint::loses() it
 
     // With Splitting::On, where is_split: the above is the refracted branch, and there is a reflected one.
     Mask<Real> is_split;
     Vec3<Real> reflected_direction;
+    Mask<Real> is_reflected_absorbed;
     Real reflectance;  ///< the weight of the reflected branch; of the refracted one it is 1 less this
 };
 
@@ -40,6 +41,7 @@ RAYPOOL_INLINE BsdfSample<Real> sample_bsdf(const SurfacePoint<Real>& point,
     if constexpr (splitting == Splitting::On) {
         out.is_split = Mask<Real>(false);
         out.reflected_direction = vec3<Real>(Real(0), Real(0), Real(0));
+        out.is_reflected_absorbed = Mask<Real>(false);
         out.reflectance = Real(0);
     }
     const Mask<Real> is_glass = material.is_glass();
@@ -78,6 +80,14 @@ RAYPOOL_INLINE BsdfSample<Real> sample_bsdf(const SurfacePoint<Real>& point,
             out.direction = select<Real>(is_metal || is_glass, onward, out.direction);
         }
     }
+    if constexpr (features.triangles) {
+        if (any(point.is_bounded || point.is_bounded_beyond)) {
+            const Mask<Real> is_beyond = is_glass && dot<Real>(out.direction, point.normal) < Real(0);
+            out.is_absorbed = out.is_absorbed || point.loses(out.direction, is_beyond);
+            if constexpr (splitting == Splitting::On)
+                out.is_reflected_absorbed = point.loses(out.reflected_direction, Mask<Real>(false));
+        }
+    }
     return out;
 }
 
@@ -94,6 +104,9 @@ RAYPOOL_INLINE Real bsdf_density(const SurfacePoint<Real>& point, const SurfaceM
             const Vec3<Real> mirrored = mirror_direction<Real>(arriving, point.normal);
             density = select(is_fuzzy, fuzzy_density<Real>(mirrored, material.parameter, direction), density);
         }
+    }
+    if constexpr (features.triangles) {
+        if (any(point.is_bounded)) density = select(point.loses(direction, Mask<Real>(false)), Real(0), density);
     }
     return select(cosine > Real(0), density, Real(0));
 }

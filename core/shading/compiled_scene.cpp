@@ -195,7 +195,9 @@ class Compiler {
                 const Vector3d placed = shape.placed(position);
                 VertexRow<Scalar>& row = out_.vertices.emplace_back(VertexRow<Scalar>{});
                 for (int i = 0; i < 3; ++i) row.value[i] = static_cast<Scalar>(placed[i]);
+                row.value[VertexRow<Scalar>::kNormal] = of_bits<Scalar>(Int<Scalar>(-1));
             }
+            add_normals(shape, first_vertex);
             // A transform that mirrors turns triangles over; the outward side stays.
             const bool is_mirrored = shape.is_mirrored();
             for (const auto& triangle : mesh.triangles) {
@@ -210,6 +212,21 @@ class Compiler {
                 for (const float coordinate : {u, v}) out_.vertex_uv.push_back(static_cast<Scalar>(coordinate));
         }
         if (!out_.vertex_uv.empty()) out_.vertex_uv.resize(2 * out_.vertices.size());
+        if (!out_.vertex_normals.empty()) out_.vertex_normals.push_back(0);
+    }
+
+    /// Those of the mesh whose vertices begin at `first_vertex`.
+    void add_normals(const MeshShape& shape, std::size_t first_vertex) {
+        const Eigen::Matrix3d transform = shape.normal_transform();
+        for (std::size_t i = 0; i < shape.mesh->normals.size(); ++i) {
+            const auto& [x, y, z] = shape.mesh->normals[i];
+            if (x == 0 && y == 0 && z == 0) continue;
+            const Vector3d normal = (transform * Vector3d(x, y, z).normalized()).normalized();
+            const std::size_t number = out_.vertex_normals.size() / 3;
+            out_.vertices[first_vertex + i].value[VertexRow<Scalar>::kNormal] =
+                of_bits<Scalar>(static_cast<Int<Scalar>>(number));
+            for (int axis = 0; axis < 3; ++axis) out_.vertex_normals.push_back(static_cast<Scalar>(normal[axis]));
+        }
     }
 
     const Scene& scene_;

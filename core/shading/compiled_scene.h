@@ -102,7 +102,7 @@ struct alignas(4 * sizeof(Scalar)) TriangleRow {
 };
 template <class Scalar>
 struct alignas(4 * sizeof(Scalar)) VertexRow {
-    enum Column { kPosition = 0, kColumns = 4 };
+    enum Column { kPosition = 0, kNormal = 3, kColumns = 4 };  ///< three; the bits of the normal's number, -1 for none
     Scalar value[kColumns];
 };
 
@@ -120,6 +120,8 @@ struct SceneTables : ShapeTables<Scalar> {
     std::vector<PlanarRow<Scalar>> planars;      ///< of quads and planes, by id less first_planar()
     std::vector<TriangleRow<Scalar>> triangles;  ///< by id less first_triangle
     std::vector<VertexRow<Scalar>> vertices;
+    /// Unit, three scalars each, and one scalar behind the last; empty where no mesh has any.
+    std::vector<Scalar> vertex_normals;
     std::vector<Scalar> vertex_uv;          ///< two of each vertex; empty where no mesh has any
     std::vector<ImageView<Scalar>> images;  ///< by texture id, beside `textures`
     std::vector<Scalar> texels;
@@ -134,6 +136,7 @@ struct SceneTables : ShapeTables<Scalar> {
         visit(self.planars);
         visit(self.triangles);
         visit(self.vertices);
+        visit(self.vertex_normals);
         visit(self.vertex_uv);
         visit(self.images);
         visit(self.texels);
@@ -165,6 +168,7 @@ struct SceneView : ShapeView<Scalar> {
     std::span<const PlanarRow<Scalar>> planars;
     std::span<const TriangleRow<Scalar>> triangles;
     std::span<const VertexRow<Scalar>> vertices;
+    std::span<const Scalar> vertex_normals;
     std::span<const Scalar> vertex_uv;
     std::span<const ImageView<Scalar>> images;
     std::span<const LightRow<Scalar>> lights;
@@ -203,6 +207,7 @@ class CompiledScene : public SceneView<Scalar> {
         this->planars = tables_->planars;
         this->triangles = tables_->triangles;
         this->vertices = tables_->vertices;
+        this->vertex_normals = tables_->vertex_normals;
         this->vertex_uv = tables_->vertex_uv;
         this->images = tables_->images;
         this->lights = tables_->lights.rows;

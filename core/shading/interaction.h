@@ -13,9 +13,22 @@ namespace raypool {
 template <class Real>
 struct SurfacePoint {
     Vec3<Real> position;
-    Vec3<Real> normal;    ///< unit, on the side that the ray arrives from
+    Vec3<Real> normal;    ///< unit, of shading, on the side that the ray arrives from: of flat shapes +-outward
     Vec3<Real> outward;   ///< unit, geometric: away from a sphere's centre
     Mask<Real> is_front;  ///< the ray arrives from the outward side
+
+    // Of smooth triangles: directions are lost that leave the surface of shading and not the triangle, on this side or
+    // beyond.
+    Mask<Real> is_bounded = Mask<Real>(false);
+    Mask<Real> is_bounded_beyond = Mask<Real>(false);
+
+    /// The geometric normal on the side that the ray arrives from.
+    [[nodiscard]] RAYPOOL_INLINE Vec3<Real> side() const { return select<Real>(is_front, outward, -outward); }
+    /// Of a unit direction that leaves the surface of shading on this side, or beyond.
+    [[nodiscard]] RAYPOOL_INLINE Mask<Real> loses(const Vec3<Real>& direction, const Mask<Real>& is_beyond) const {
+        const Real height = dot<Real>(direction, side());
+        return (is_bounded && !is_beyond && height <= Real(0)) || (is_bounded_beyond && is_beyond && height >= Real(0));
+    }
 };
 
 /// `row` is the primitive's SurfaceRow, transposed. A hit on a sphere is put back onto the sphere where the distance
@@ -226,31 +239,50 @@ struct RayStart {
     Int<Real> leaving_id;  ///< a sphere's id; of a quad or plane the id of the shapes in its plane
 };
 
-/// Where rays start that leave a triangle on the side of unit `side`, which is its normal or that negated; of what is
-/// no triangle, the point.
+/// Where rays start that leave a triangle on the side of unit `side`, which is its normal or that negated: above `from`
+/// by as much as the point of the triangle may be off.
 template <class Real>
-RAYPOOL_INLINE Vec3<Real> triangle_start(const SurfacePoint<Real>& point, const TrianglePoint<Real>& triangle,
+RAYPOOL_INLINE Vec3<Real> triangle_start(const Vec3<Real>& from, const TrianglePoint<Real>& triangle,
                                          const Vec3<Real>& side) {
     const Vec3<Real> length = vec3<Real>(abs(side[0]), abs(side[1]), abs(side[2]));
-    return select<Real>(triangle.is_here, along<Real>(point.position, dot<Real>(length, triangle.error), side),
-                        point.position);
+    return along<Real>(from, dot<Real>(length, triangle.error), side);
 }
 
 /// Of a ray that leaves `point` of primitive `primitive_id`, whose SurfaceRow is `row`, on the side from
-/// which it was met. On a triangle the start lies above it by as much as the point may be off: neighbours share its
-/// edges and are not left with it. No other place decides where a ray starts. (Set in place: of a returned one gcc 12
-/// makes a copy, which single rays feel.)
+/// which it was met. On a triangle the start lies above it: neighbours share its edges and are not left with it. From
+/// where a smooth one is lifted, a ray leaves nothing, and may meet the triangle. No other place decides where a ray
+/// starts. (Set in place: of a returned one gcc 12 makes a copy, which single rays
+/// feel.)
 template <Features features, class Real>
 RAYPOOL_INLINE void set_ray_start(RayStart<Real>& start, const SurfacePoint<Real>& point,
                                   const TrianglePoint<Real>& triangle, const Int<Real>& primitive_id, const Real* row) {
     start.origin = point.position;
-    if constexpr (features.triangles) {
-        if (any(triangle.is_here)) start.origin = triangle_start<Real>(point, triangle, point.normal);
-    }
     start.leaving_id = primitive_id;
     if constexpr (features.planar) {
         start.leaving_id = PlanarMark<Real>::group(row[SurfaceRow<ScalarOf<Real>>::kRadius], primitive_id);
     }
+    if constexpr (features.triangles) {
+        if (none(triangle.is_here)) return;
+        Vec3<Real> from = point.position;
+        if (any(triangle.is_smooth)) {
+            const Vec3<Real>& lift = triangle.smooth.lift;
+            from = select<Real>(triangle.is_smooth, vec3<Real>(from[0] + lift[0], from[1] + lift[1], from[2] + lift[2]),
+                                from);
+            const Mask<Real> is_lifted = triangle.is_smooth && triangle.smooth.is_lifted;
+            start.leaving_id = select(is_lifted, Int<Real>(kNoPrimitive), start.leaving_id);
+        }
+        start.origin = select<Real>(triangle.is_here, triangle_start<Real>(from, triangle, point.side()), start.origin);
+    }
+}
+
+/// The same of rays in `is_through`, which go through the triangle, and are not lifted.
+template <class Real>
+RAYPOOL_INLINE void set_start_beyond(RayStart<Real>& start, const SurfacePoint<Real>& point,
+                                     const TrianglePoint<Real>& triangle, const Int<Real>& primitive_id,
+                                     const Mask<Real>& is_through) {
+    start.origin =
+        select<Real>(is_through, triangle_start<Real>(point.position, triangle, -point.side()), start.origin);
+    start.leaving_id = select(is_through, primitive_id, start.leaving_id);
 }
 
 }  // namespace raypool

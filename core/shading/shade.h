@@ -52,7 +52,7 @@ struct Scattered {
 
     // With Splitting::On, and where is_split: the above is the refracted branch, and there is a reflected one.
     Mask<Real> is_split;
-    Vec3<Real> reflected_origin;  ///< it leaves what the other one leaves
+    RayStart<Real> reflected_start;
     Vec3<Real> reflected_direction;
     Vec3<Real> reflected_throughput;
     Mask<Real> is_reflected_alive;
@@ -193,13 +193,11 @@ RAYPOOL_INLINE Scattered<Real> scatter(const SceneView<ScalarOf<Real>>& scene, c
             share_with_lights<features, Real>(scene, ray, t, primitive_id, row, key, step, seed, point, material,
                                               *lights, out);
     }
-    if constexpr (splitting == Splitting::On) out.reflected_origin = out.start.origin;
+    if constexpr (splitting == Splitting::On) out.reflected_start = out.start;
     if constexpr (features.triangles && features.dielectric) {
         const Mask<Real> is_through =
             triangle.is_here && is_glass && dot<Real>(sample.direction, point.normal) < Real(0);
-        if (any(is_through))
-            out.start.origin =
-                select<Real>(is_through, triangle_start<Real>(point, triangle, -point.normal), out.start.origin);
+        if (any(is_through)) set_start_beyond<Real>(out.start, point, triangle, primitive_id, is_through);
     }
     if constexpr (splitting == Splitting::On) {
         out.is_split = sample.is_split;
@@ -213,7 +211,8 @@ RAYPOOL_INLINE Scattered<Real> scatter(const SceneView<ScalarOf<Real>>& scene, c
 
     out.is_alive = carries_light<Real>(out.throughput) && !(sample.is_absorbed || out.is_emitter);
     if constexpr (splitting == Splitting::On) {
-        out.is_reflected_alive = out.is_split && carries_light<Real>(out.reflected_throughput);
+        out.is_reflected_alive =
+            out.is_split && carries_light<Real>(out.reflected_throughput) && !sample.is_reflected_absorbed;
     }
     if (roulette) [[unlikely]] {
         const Mask<Real> is_played = plays_roulette<Real>(step);

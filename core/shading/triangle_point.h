@@ -1,8 +1,9 @@
-/// Where rays met triangles: which, and where on them. Called by interaction.h alone.
+/// Where rays met triangles: which, where on them, and what is smooth about them. Called by interaction.h alone.
 #pragma once
 
 #include <array>
 
+#include "core/geometry/smooth_triangles.h"
 #include "core/geometry/triangles.h"
 #include "core/shading/compiled_scene.h"
 
@@ -16,10 +17,17 @@ struct TrianglePoint {
     std::array<Real, 3> weight;  ///< of the vertices, which add up to 1
     Vec3<Real> position;         ///< of the vertices by their weights: its error is one of their coordinates'
     Vec3<Real> error;            ///< of the position, at most, along each axis
+    Mask<Real> is_smooth = Mask<Real>(false);  ///< it is here, and all of its vertices have normals
+    SmoothPoint<Real> smooth;                  ///< where is_smooth
 
     /// Puts a SurfacePoint onto the triangle.
     RAYPOOL_INLINE void place(auto& point) const {
         if (any(is_here)) point.position = select<Real>(is_here, position, point.position);
+        if (any(is_smooth)) {
+            point.normal = select<Real>(is_smooth, smooth.normal, point.normal);
+            point.is_bounded = is_smooth && !smooth.is_lifted;
+            point.is_bounded_beyond = is_smooth;
+        }
     }
 };
 
@@ -36,6 +44,7 @@ RAYPOOL_INLINE TriangleWeights<Real> load_triangle(const SceneView<ScalarOf<Real
     load_rows<Triangle::kColumns, Real>(scene.triangles.data()->value, Triangle::kColumns, number, columns);
     surface_id = select(triangle.is_here, bits_of<Real>(columns[Triangle::kSurface]), primitive_id);
     std::array<Vec3<Real>, 3> vertex;
+    std::array<Int<Real>, 3> normal_id;
     for (int i = 0; i < 3; ++i) {
         using Vertex = VertexRow<S>;
         Real position[Vertex::kColumns];
@@ -43,6 +52,7 @@ RAYPOOL_INLINE TriangleWeights<Real> load_triangle(const SceneView<ScalarOf<Real
         load_rows<Vertex::kColumns, Real>(scene.vertices.data()->value, Vertex::kColumns, triangle.vertex_id[i],
                                           position);
         vertex[i] = vec3<Real>(position[0], position[1], position[2]);
+        normal_id[i] = bits_of<Real>(position[Vertex::kNormal]);
     }
     const TriangleWeights<Real> weights = triangle_weights<Real>(ray.origin, ray_shear<Real>(ray.direction), vertex);
     const Real scale = Real(1) / weights.determinant;
@@ -54,6 +64,19 @@ RAYPOOL_INLINE TriangleWeights<Real> load_triangle(const SceneView<ScalarOf<Real
     }
     triangle.error = triangle_error<Real>(vertex);
     outward = triangle_normal<Real>(vertex);
+
+    const Int<Real> lowest_bits = normal_id[0] | normal_id[1] | normal_id[2];  // negative where one of them is
+    triangle.is_smooth = triangle.is_here && as_mask<Real>(lowest_bits >= Int<Real>(0));
+    if (none(triangle.is_smooth)) return weights;
+    std::array<Vec3<Real>, 3> normal;
+    for (int i = 0; i < 3; ++i) {
+        Real columns_of_normal[4];  // the fourth is of the next
+        load_rows<4, Real>(scene.vertex_normals.data(), 3, select(triangle.is_smooth, normal_id[i], Int<Real>(0)),
+                           columns_of_normal);
+        normal[i] = vec3<Real>(columns_of_normal[0], columns_of_normal[1], columns_of_normal[2]);
+    }
+    triangle.smooth =
+        smooth_point<Real>(vertex, normal, triangle.weight, triangle.position, triangle.error, outward, ray.direction);
     return weights;
 }
 

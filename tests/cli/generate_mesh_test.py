@@ -35,6 +35,16 @@ class GenerateMeshTest(GeneratorTest):
             self.assertEqual(made[0], made[1])
             self.assertNotEqual(made[0], made[2])
 
+    def test_a_smooth_mesh_is_the_same_with_normals_and_another_image(self):
+        for kind in KINDS:
+            hashes = []
+            for name, options in (("flat", ()), ("smooth", ("--smooth",))):
+                self.generate_well(1000, kind, "-o", f"{name}.json", *options)
+                hashes.append(self.stats(f"{name}.json", "--width", 16, "--spp", 1)["hash"])
+            self.assertIn(b"property float nz\n", (self.folder / "smooth.ply").read_bytes())
+            if kind != "needles":  # whose triangles share no vertex
+                self.assertNotEqual(hashes[0], hashes[1], kind)
+
     def test_what_makes_no_sense_is_refused(self):
         self.assert_each_refused((11, "blob", "-o", "x.json"), (15_000_001, "blob", "-o", "x.json"), ("many", "blob", "-o", "x.json"),
                                  (1000, "bunny", "-o", "x.json"), (1000, "blob"), (1000, "blob", "-o", "absent/x.json"))

@@ -99,6 +99,8 @@ const std::vector<MatrixCase> kCases{
     {"half_sky", "half_sky", 33, 19, 1, 50},
     {"solids", "solids", 32, 18, 2, 50},
     {"split_solids", "solids", 16, 9, 2, 50, Sampler::Sobol, true, 2},
+    {"smooth", "smooth", 32, 18, 2, 50},
+    {"split_smooth", "smooth", 16, 9, 2, 50, Sampler::Sobol, true, 2},
     {"deep_mirror_corridor", "mirror_corridor", 17, 9, 1, 200},
     {"one_pixel_of_paper", "paper", 1, 1, 3, 50},
     {"two_pixels_of_cornell", "cornell", 2, 1, 3, 50},
@@ -120,7 +122,7 @@ TEST_P(HashMatrixInDouble, EveryLoopAndBothFormsMakeOneImage) {
 INSTANTIATE_TEST_SUITE_P(
     Scenes, HashMatrixInDouble,
     testing::Values(MatrixCase{"paper", "paper", 17, 9, 1, 50}, MatrixCase{"textures", "textures", 17, 9, 1, 50},
-                    MatrixCase{"solids", "solids", 16, 9, 1, 50},
+                    MatrixCase{"solids", "solids", 16, 9, 1, 50}, MatrixCase{"smooth", "smooth", 16, 9, 1, 50},
                     MatrixCase{"cornell_by_sobol_and_roulette", "cornell", 12, 12, 2, 50, Sampler::Sobol, true}),
     [](const auto& test) { return test.param.name; });
 

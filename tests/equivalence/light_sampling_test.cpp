@@ -94,7 +94,8 @@ TEST(LightSamplingWithoutLights, IsNone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Equivalence, LightSampledImage,
-                         testing::Values("cornell", "mirror_corridor", "textures", "caustic", "sky_image", "solids"),
+                         testing::Values("cornell", "mirror_corridor", "textures", "caustic", "sky_image", "solids",
+                                         "smooth"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

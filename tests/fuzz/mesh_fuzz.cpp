@@ -2,6 +2,7 @@
 /// as a PLY file must is read as one, all else as an OBJ file.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
@@ -30,6 +31,11 @@ void check_mesh(const Mesh& mesh) {
     for (const Mesh::Triangle& triangle : mesh.triangles) {
         require(std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t index) { return index < count; }),
                 "an index names a vertex");
+        if (mesh.normals.empty()) continue;
+        const auto is_zero = [&](std::uint32_t index) { return mesh.normals[index] == std::array<float, 3>{}; };
+        require(std::all_of(triangle.begin(), triangle.end(), is_zero) ||
+                    std::none_of(triangle.begin(), triangle.end(), is_zero),
+                "all vertices of a triangle have normals or none");
     }
 }
 

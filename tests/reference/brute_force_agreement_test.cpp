@@ -21,7 +21,7 @@ constexpr int kBatchSpp = 16;
 constexpr std::int32_t kDepth = 50;
 constexpr int kGrid = 5;  // tiles across and down
 constexpr int kFigures = 3 * kGrid * kGrid + 1;
-constexpr int kTests = 14 * kFigures;  // seven scenes, two precisions
+constexpr int kTests = 16 * kFigures;  // eight scenes, two precisions
 
 /// What is compared of a render: the mean of each channel over each tile, and the segments of a path.
 using Figures = std::array<double, kFigures>;
@@ -112,7 +112,7 @@ TEST_P(BruteForceAgreement, OfTheImageOfEachPrecisionWithinNoise) {
 INSTANTIATE_TEST_SUITE_P(Scenes, BruteForceAgreement,
                          testing::Values(Case{"paper", 80}, Case{"cornell", 50}, Case{"glass_stack", 60},
                                          Case{"textures", 60}, Case{"furnace", 40}, Case{"sky_image", 50},
-                                         Case{"solids", 60}),
+                                         Case{"solids", 60}, Case{"smooth", 60}),
                          [](const auto& info) { return info.param.scene; });
 
 TEST(BruteForceComparison, NoticesGlassThatIsALittleTooDense) {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "tests/reference/plain_vector.h"
+#include "tests/reference/flat_shapes.h"
 
 namespace raypool::test {
 
@@ -15,19 +15,6 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 /// No hit is closer: what a ray starts on is at 0 to rounding.
 constexpr double kLeast = 1e-7;
-
-Vec vec(const Vector3d& v) {
-    return {v.x(), v.y(), v.z()};
-}
-
-/// A quad, a triangle or a plane, with the vectors that coordinates in it are measured along.
-struct Flat {
-    enum class Kind { Quad, Plane, Triangle };  ///< ends where a coordinate leaves [0, 1], or nowhere, or at u + v = 1
-    Vec corner, normal, along_u, along_v;
-    Kind kind;
-    int material_id;
-    Coordinates texture[3] = {{0, 0}, {1, 0}, {0, 1}};  ///< at (0, 0), (1, 0) and (0, 1)
-};
 
 struct Ball {
     Vec center, motion;
@@ -57,9 +44,14 @@ class Tracer {
                 Flat& flat = add(placed(a), placed(b) - placed(a), placed(c) - placed(a), Flat::Kind::Triangle,
                                  shape.material_id);
                 if (is_mirrored) flat.normal = -1 * flat.normal;
-                if (mesh.uv.empty()) continue;
                 const std::uint32_t corners[3] = {a, b, c};
-                for (int i = 0; i < 3; ++i) flat.texture[i] = {mesh.uv[corners[i]][0], mesh.uv[corners[i]][1]};
+                flat.is_smooth = !mesh.normals.empty();
+                for (int i = 0; i < 3 && flat.is_smooth; ++i) {
+                    flat.corners[i] = placed(corners[i]);
+                    flat.normals[i] = placed_normal(shape, mesh.normals[corners[i]]);
+                }
+                for (int i = 0; i < 3 && !mesh.uv.empty(); ++i)
+                    flat.texture[i] = {mesh.uv[corners[i]][0], mesh.uv[corners[i]][1]};
             }
         }
         for (const Plane& p : scene.planes) {
@@ -107,7 +99,12 @@ class Tracer {
             const Vec outward =
                 hit.flat != nullptr ? hit.flat->normal : 1 / hit.ball->radius * (origin - center(*hit.ball, time));
             const bool is_front = dot(direction, outward) < 0;
-            const Vec normal = is_front ? outward : -1 * outward;
+            const Vec side = is_front ? outward : -1 * outward;
+            const Smooth smooth = hit.flat != nullptr && hit.flat->is_smooth
+                                      ? smooth_at(*hit.flat, origin, side, direction)
+                                      : Smooth{side, {}, false};
+            const Vec normal = smooth.normal;
+            bool is_through = false;
             const int id = hit.flat != nullptr ? hit.flat->material_id : hit.ball->material_id;
             const Material& material = scene_.materials[static_cast<std::size_t>(id)];
             if (material.kind != Material::Kind::Dielectric)
@@ -126,8 +123,12 @@ class Tracer {
                     break;
                 case Material::Kind::Dielectric:
                     direction = glass(direction, mirrored, normal, is_front ? 1 / material.ior : material.ior);
+                    is_through = dot(direction, normal) < 0;
                     break;
             }
+            // A smooth triangle loses what leaves its smooth surface and not itself, unless the ray starts above it.
+            if (is_through ? dot(direction, side) >= 0 : !smooth.is_above && dot(direction, side) <= 0) return {};
+            if (!is_through) origin = origin + smooth.lift;
             if (throughput.x == 0 && throughput.y == 0 && throughput.z == 0) return {};
         }
         return {};
@@ -209,18 +210,6 @@ class Tracer {
         const double within = (cos_in - eta * cos_out) / (cos_in + eta * cos_out);
         if (chance < (across * across + within * within) / 2) return mirrored;
         return unit(eta * direction + (eta * cos_in - cos_out) * normal);
-    }
-
-    static Coordinates coordinates(const Flat& flat, Vec p) {
-        const Vec offset = p - flat.corner;
-        return {dot(offset, flat.along_u), dot(offset, flat.along_v)};
-    }
-
-    static Coordinates texture_coordinates(const Flat& flat, Vec p) {
-        const auto [s, t] = coordinates(flat, p);
-        const auto& [at_corner, at_u, at_v] = flat.texture;
-        return {at_corner.u + s * (at_u.u - at_corner.u) + t * (at_v.u - at_corner.u),
-                at_corner.v + s * (at_u.v - at_corner.v) + t * (at_v.v - at_corner.v)};
     }
 
     static bool is_odd_cell(double x, double y, double z) {

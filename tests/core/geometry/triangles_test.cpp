@@ -133,6 +133,58 @@ TYPED_TEST(TrianglesOf, AreNotMetAgainByWhatLeavesThem) {
     }
 }
 
+/// Of a smooth convex mesh, of any material: what leaves it outward may meet it again from without, where its normals
+/// send rays toward it, and never from within; what leaves it inward meets it from within.
+TYPED_TEST(TrianglesOf, LetNothingThroughThatLeavesThemSmooth) {
+    using Scalar = TypeParam;
+    for (const auto kind : {Material::Kind::Diffuse, Material::Kind::Metal, Material::Kind::Dielectric}) {
+        for (const auto& offset : {kNowhere(), kFarAway()}) {
+            Scene described = scene_of(smooth_icosphere(2), offset);
+            described.materials[0].kind = kind;
+            described.materials[0].fuzz = 0.3;
+            described.materials[0].ior = 1.5;
+            const CompiledScene<Scalar> scene = compile<Scalar>(described);
+            RandomInputs random(54);
+            int wrong_sides = 0, lost = 0, met_again = 0;
+            constexpr int kRays = 50'000;
+            for (int i = 0; i < kRays; ++i) {
+                const Vec3<Scalar> middle = offset.template cast<Scalar>();
+                const Vec3<Scalar> from = middle + static_cast<Scalar>(2) * random.direction<Scalar>();
+                const Vec3<Scalar> to = middle + static_cast<Scalar>(0.5) * random.point<Scalar>(1);
+                const bool is_inside = i % 2 == 0;
+                const Ray<Scalar> ray{is_inside ? to : from, unit<Scalar>(is_inside ? from - to : to - from), 0};
+                const Hit<Scalar> hit = hit_of(scene, ray, kNoPrimitive);
+                const PathKey<Scalar> key{static_cast<std::uint32_t>(i), 0};
+                const Scattered<Scalar> out = scatter<kEverything, Scalar>(scene, ray, hit.t, hit.primitive_id,
+                                                                           vec3<Scalar>(1, 1, 1), key, 0, {});
+                if (!out.is_alive) {
+                    ++lost;
+                    continue;
+                }
+                const auto triangle = static_cast<std::uint32_t>(hit.primitive_id - scene.first_triangle);
+                const auto outward_of = [&](std::uint32_t id) {
+                    return triangle_normal<Scalar>({vertex(scene, id, 0), vertex(scene, id, 1), vertex(scene, id, 2)});
+                };
+                const bool is_through =
+                    ((out.start.origin - vertex(scene, triangle, 0)).dot(outward_of(triangle)) < 0) != is_inside;
+                const Hit<Scalar> next = hit_of(scene, Ray<Scalar>{out.start.origin, out.direction, 0},
+                                                static_cast<std::int32_t>(out.start.leaving_id));
+                if (is_inside != is_through) {
+                    const auto id = static_cast<std::uint32_t>(next.primitive_id - scene.first_triangle);
+                    wrong_sides += next.primitive_id == kNoPrimitive || out.direction.dot(outward_of(id)) < 0 ? 1 : 0;
+                } else if (next.primitive_id != kNoPrimitive) {
+                    const auto id = static_cast<std::uint32_t>(next.primitive_id - scene.first_triangle);
+                    wrong_sides += out.direction.dot(outward_of(id)) > 0 ? 1 : 0;
+                    ++met_again;
+                }
+            }
+            EXPECT_EQ(wrong_sides, 0) << static_cast<int>(kind) << " around " << offset.transpose();
+            EXPECT_LT(lost, kRays / 20);
+            EXPECT_LT(met_again, kRays / 50);
+        }
+    }
+}
+
 /// The closest of all triangles, one by one; of a tie the first.
 TYPED_TEST(TrianglesOf, AreFoundByTreesAsOneByOne) {
     using Scalar = TypeParam;

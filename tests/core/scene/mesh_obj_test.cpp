@@ -48,12 +48,12 @@ TEST(MeshObj, SplitsVerticesWhoseNormalsOrUvDiffer) {
     EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 3, 4}, {5, 3, 4}}));
 }
 
-TEST(MeshObj, WhatACornerLeavesOutIsZero) {
+TEST(MeshObj, WhatACornerOrAFaceLeavesOutIsZero) {
     const std::string more = "vt 0.25 0.5 0\nvn 0 0 1\n";
-    const Mesh mesh = obj(kCorners + more + "f 1 2/1 3//1\nf 4/-1/-1 1 2\n");
-    EXPECT_EQ(mesh.uv, (std::vector<Row2>{{0, 0}, {0.25F, 0.5F}, {0, 0}, {0.25F, 0.5F}, {0, 0}}));
-    EXPECT_EQ(mesh.normals, (std::vector<Row3>{{0, 0, 0}, {0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 0}}));
-    EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 0, 4}}));
+    const Mesh mesh = obj(kCorners + more + "f 1 2/1 3\nf 4/-1/-1 1//1 2//1\n");
+    EXPECT_EQ(mesh.uv, (std::vector<Row2>{{0, 0}, {0.25F, 0.5F}, {0, 0}, {0.25F, 0.5F}, {0, 0}, {0, 0}}));
+    EXPECT_EQ(mesh.normals, (std::vector<Row3>{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}}));
+    EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
     EXPECT_TRUE(obj(kCorners + more + "f 1 2 3\n").uv.empty());
     EXPECT_TRUE(obj(kCorners + more + "f 1/1 2/1 3/1\n").normals.empty());
 }
@@ -145,6 +145,9 @@ TEST(MeshObj, RefusesWhatIsWrongNamingTheLine) {
         {"vn 0 0\n", "5: z is missing"},
         {"vn 0 0 inf\n", "5: z" + finite + "\"inf\""},
         {"vn 0 0 1 1\n", "5: the line must end before \"1\""},
+        {"vn 0 -0 0\n", "5: a normal must not be 0 0 0"},
+        {"vn 0 0 1\nf 1//1 2//1 3\n", "6: all corners of a face must have a vn, or none"},
+        {"vt 0\nvn 0 0 1\nf 1/1 2/1 3/1/1\n", "7: all corners of a face must have a vn, or none"},
         {"vt\n", "5: u is missing"},
         {"vt 0 nan\n", "5: v" + finite + "\"nan\""},
         {"vt 0 0 0 0\n", "5: the line must end before \"0\""},

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/core/scene/mesh_samples.h"
@@ -223,6 +224,22 @@ TEST(MeshPlyRefusals, OfNormalsAndUvThatAreNotFinite) {
         EXPECT_EQ(ply_refusal(file), "a.ply:17: " + name + " must be a finite number within single precision, got \"" +
                                          (name == "nz" ? "nan\"" : "inf\""));
     }
+}
+
+TEST(MeshPlyRefusals, OfNormalsOfNoLength) {
+    const std::string properties = "property float nx\nproperty float ny\nproperty float nz\n";
+    const std::string text = with(kAsciiSquare, "float z\n", "float z\n" + properties);
+    EXPECT_EQ(ply_refusal(with(text, "0 0 0\n1 0 0\n1 1 -2.5e-1\n0 1 1e-40\n",
+                               "0 0 0 0 0 1\n1 0 0 0 -0 0\n1 1 0 0 0 1\n0 1 0 0 0 1\n")),
+              "a.ply:15: nx, ny and nz must not all be 0");
+    BinaryData data(std::endian::big);
+    data.add_all<float>(0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0);
+    data.add<std::uint8_t>(3).add_all<std::int32_t>(0, 1, 2);
+    const std::string header =
+        binary_header(std::endian::big, "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
+                                            properties + "element face 1\nproperty list uchar int vertex_indices\n");
+    EXPECT_EQ(ply_refusal(header + data.bytes()),
+              fmt::format("a.ply: byte {}: \"vertex\" 1: nx, ny and nz must not all be 0", header.size() + 48));
 }
 
 TEST(MeshPlyRefusals, OfEveryTruncation) {

@@ -125,12 +125,12 @@ TEST(MeshPly, TakesTheFirstPairOfUvAndSkipsHalfAPair) {
     EXPECT_EQ(read_ply(both, "a.ply").positions, (std::vector<Row3>{{5, 6, 7}}));
 }
 
-TEST(MeshPly, AZeroNormalIsKept) {
+TEST(MeshPly, NormalsHaveAnyLength) {
     std::string file =
         with(kAsciiSquare, "float z\n", "float z\nproperty float nx\nproperty float ny\nproperty int nz\n");
-    file =
-        with(file, "0 0 0\n1 0 0\n1 1 -2.5e-1\n0 1 1e-40\n", "0 0 0 0 0 1\n1 0 0 0 0 0\n1 1 1 0 0 -2\n0 1 0 9 0 0\n");
-    EXPECT_EQ(read_ply(file, "a.ply").normals, (std::vector<Row3>{{0, 0, 1}, {0, 0, 0}, {0, 0, -2}, {9, 0, 0}}));
+    file = with(file, "0 0 0\n1 0 0\n1 1 -2.5e-1\n0 1 1e-40\n",
+                "0 0 0 0 0 1\n1 0 0 0 1e-40 0\n1 1 1 0 0 -2\n0 1 0 9 0 0\n");
+    EXPECT_EQ(read_ply(file, "a.ply").normals, (std::vector<Row3>{{0, 0, 1}, {0, 1e-40F, 0}, {0, 0, -2}, {9, 0, 0}}));
 }
 
 TEST(MeshPly, SkipsOtherElementsAndProperties) {
