@@ -25,6 +25,8 @@ namespace fs = std::filesystem;
 constexpr const char* kReproduce = "reproduce";
 /// They repeat the paper together, in the order of its page.
 const std::vector<std::string> kPaperStudies{"load", "schedules", "scaling", "pool", "framebuffer"};
+/// They ask what the paper did not, and have a page of their own.
+const std::vector<std::string> kBeyondStudies{"scene-size", "traversal", "light"};
 
 struct StudyCommand {
     std::string name;
@@ -37,7 +39,9 @@ struct StudyCommand {
 
 void list_studies() {
     for (const studies::Study& study : studies::all_studies()) print("{:<14} {}\n", study.name, study.question);
-    print("{:<14} All of the paper's experiments, and a page that holds its figures against ours.\n", kReproduce);
+    print(
+        "{:<14} All of the paper's experiments, and a page that holds its figures against ours; and one beyond them.\n",
+        kReproduce);
 }
 
 /// One study, in `folder`.
@@ -75,12 +79,14 @@ int study(StudyCommand& command) {
     if (command.options.threads > 0) thread_count(command.options.threads);
     const fs::path folder = command.output.empty() ? fs::path("out") / command.name : fs::path(command.output);
     if (command.name != kReproduce) return run(studies::make_study(command.name), folder, command);
-    for (const std::string& name : kPaperStudies) {
-        const int status = run(studies::make_study(name), folder / name, command);
-        if (status != 0) return status;
+    for (const auto* names : {&kPaperStudies, &kBeyondStudies}) {
+        for (const std::string& name : *names) {
+            const int status = run(studies::make_study(name), folder / name, command);
+            if (status != 0) return status;
+        }
     }
-    studies::write_reproduction(folder, kPaperStudies);
-    if (!command.is_quiet) print("{}\n", (folder / "summary.md").string());
+    studies::write_reproduction(folder, kPaperStudies, kBeyondStudies);
+    if (!command.is_quiet) print("{}\n{}\n", (folder / "summary.md").string(), (folder / "beyond.md").string());
     return 0;
 }
 

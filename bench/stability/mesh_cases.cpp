@@ -119,8 +119,7 @@ struct SmoothHit {
 
     SmoothHit(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray, const Hit<Scalar>& hit) {
         Scalar row[SurfaceRow<Scalar>::kColumns];
-        Int<Scalar> surface_id;
-        triangle = load_surface<kEverything, Scalar>(scene, ray, hit.primitive_id, surface_id, row);
+        triangle = load_surface<kEverything, Scalar>(scene, ray, hit.primitive_id, row);
         point = surface_point<kEverything, Scalar>(ray, hit.t, row);
         triangle.place(point);
         set_ray_start<kEverything, Scalar>(start, point, triangle, hit.primitive_id, row);

@@ -31,9 +31,12 @@ void analyse(const fs::path& folder) {
     run_analysis(folder, {"study", folder.string()});
 }
 
-void write_reproduction(const fs::path& folder, const std::vector<std::string>& studies) {
+void write_reproduction(const fs::path& folder, const std::vector<std::string>& of_paper,
+                        const std::vector<std::string>& beyond) {
     std::vector<std::string> arguments{"reproduce", folder.string()};
-    arguments.insert(arguments.end(), studies.begin(), studies.end());
+    arguments.insert(arguments.end(), of_paper.begin(), of_paper.end());
+    arguments.emplace_back("--beyond");
+    arguments.insert(arguments.end(), beyond.begin(), beyond.end());
     run_analysis(folder, std::move(arguments));
 }
 

@@ -13,8 +13,9 @@ namespace raypool::studies {
 /// are complete then, and the same command goes on from there.
 void analyse(const std::filesystem::path& folder);
 
-/// summary.md in `folder` over the analysed runs of studies in its subfolders: the paper's figures against ours, in the
-/// order of `studies`. Throws as analyse() does.
-void write_reproduction(const std::filesystem::path& folder, const std::vector<std::string>& studies);
+/// Two pages in `folder` over the analysed runs of studies in its subfolders, in their order: summary.md, the paper's
+/// figures against ours, and beyond.md, what the paper did not ask. Throws as analyse() does.
+void write_reproduction(const std::filesystem::path& folder, const std::vector<std::string>& of_paper,
+                        const std::vector<std::string>& beyond);
 
 }  // namespace raypool::studies

@@ -21,9 +21,10 @@ def main():
     commands = parser.add_subparsers(required=True, dest="command")
     of_study = commands.add_parser("study", help="summarise and draw the run in FOLDER")
     of_study.add_argument("folder")
-    of_paper = commands.add_parser("reproduce", help="one page over the summarised runs of studies, folders in FOLDER")
+    of_paper = commands.add_parser("reproduce", help="pages over the summarised runs of studies, folders in FOLDER")
     of_paper.add_argument("folder")
-    of_paper.add_argument("studies", nargs="+")
+    of_paper.add_argument("studies", nargs="+", help="which repeat the paper")
+    of_paper.add_argument("--beyond", nargs="+", required=True, help="which ask what the paper did not")
     of_trace = commands.add_parser("trace", help="draw what `raypool render --trace` wrote, a lane for each thread")
     of_trace.add_argument("trace")
     of_trace.add_argument("picture")
@@ -31,6 +32,6 @@ def main():
     if asked.command == "study":
         study(asked.folder)
     elif asked.command == "reproduce":
-        reproduction.write(asked.folder, asked.studies)
+        reproduction.write(asked.folder, asked.studies, asked.beyond)
     else:
         trace.draw(asked.trace, asked.picture)

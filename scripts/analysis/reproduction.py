@@ -1,4 +1,4 @@
-"""`raypool study reproduce`: one page that holds the paper's figures against ours, from the runs of several studies.
+"""`raypool study reproduce`: a page that holds the paper's figures against ours, and one of what the paper did not ask.
 
 The paper: He, Song, Zong, "Parallel Ray Tracing with OpenMP". What the studies found (a finding's source names the table
 or figure) is put side by side, in the paper's order.
@@ -34,14 +34,29 @@ def reproduction_page(runs):
             "what the paper reports, what this machine shows, and whether the claim holds here.\n\n")
     text += page.markdown(["of the paper", "claim", "the paper's figures", "ours", "verdict", "from"],
                           [row for item in ITEMS for row in item_rows(runs, *item)]) + "\n"
+    return text + pictures(runs) + page.machine_line(runs[0]["environment"]) + ".\n"
+
+
+def beyond_page(runs):
+    text = ("# Beyond the paper\n\nWhat the paper did not ask: scenes of any size, meshes of triangles and lights that are "
+            "sampled. What a pool gains there, over recursion and over a traversal that is not ours.\n\n")
+    text += page.markdown(["claim", "ours", "verdict", "from"],
+                          [[f["claim"], f["ours"], page.verdict_text(f), f"[{run['study']}]({run['study']}/summary.md)"]
+                           for run in runs for f in run["findings"]]) + "\n"
+    return text + pictures(runs) + page.machine_line(runs[0]["environment"]) + ".\n"
+
+
+def pictures(runs):
+    text = ""
     for run in runs:
         text += f"## {run['study']}\n\n{run['question']}\n\n"
         for picture in run["pictures"]:
             text += f"![{picture['title']}]({run['study']}/{picture['name']}.png)\n\n"
-    return text + page.machine_line(runs[0]["environment"]) + ".\n"
+    return text
 
 
-def write(folder, studies):
-    """summary.md in `folder`, from the summarised runs in its subfolders, in the order of the page."""
-    runs = [json.loads((Path(folder) / study / "run.json").read_text(encoding="utf-8")) for study in studies]
-    data.write_text(Path(folder) / "summary.md", reproduction_page(runs))
+def write(folder, of_paper, beyond):
+    """summary.md and beyond.md in `folder`, from the summarised runs of studies in its subfolders, in their order."""
+    for name, studies, make_page in (("summary.md", of_paper, reproduction_page), ("beyond.md", beyond, beyond_page)):
+        runs = [json.loads((Path(folder) / study / "run.json").read_text(encoding="utf-8")) for study in studies]
+        data.write_text(Path(folder) / name, make_page(runs))

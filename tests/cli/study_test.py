@@ -63,6 +63,10 @@ class StudyTest(CommandTest):
                     for item in ("Table 1", "Table 2", "Figure 5", "Figure 11", "CPU against GPU"):
                         self.assertIn(item, page)
                     self.assertRegex(page, r"\*\*(holds|does not hold|cannot be told here)")
+                    beyond = (self.folder / "out/reproduce/beyond.md").read_text()
+                    for study in ("scene-size", "traversal", "light"):
+                        self.assertIn(f"[{study}]({study}/summary.md)", beyond)
+                        self.assertIn(f"## {study}", beyond)
                 else:
                     self.check_folder(self.folder / "out" / name)
                 if name == "stability":
