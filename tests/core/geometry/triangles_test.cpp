@@ -185,28 +185,34 @@ TYPED_TEST(TrianglesOf, LetNothingThroughThatLeavesThemSmooth) {
     }
 }
 
-/// The closest of all triangles, one by one; of a tie the first.
+/// The closest of all triangles, one by one; of a tie the first. Nothing is before it, and it is before what lies
+/// behind.
 TYPED_TEST(TrianglesOf, AreFoundByTreesAsOneByOne) {
     using Scalar = TypeParam;
     RandomInputs random(53);
     const CompiledScene<Scalar> scene = compile<Scalar>(scene_of(triangle_soup(500, random)));
-    int hits = 0;
-    for (int i = 0; i < 20'000; ++i) {
-        const Ray<Scalar> ray{random.point<Scalar>(7), random.direction<Scalar>(), 0};
+    const std::int64_t rays = wanted("RAYPOOL_BRUTE_FORCE_RAYS", 20'000);
+    const auto ray_of = [](RandomInputs& inputs) {
+        const Vec3<Scalar> origin = inputs.point<Scalar>(7);
+        return Ray<Scalar>{origin, inputs.direction<Scalar>(), 0};
+    };
+    const auto differs = [&](RandomInputs& inputs, std::int64_t) {
+        const Ray<Scalar> ray = ray_of(inputs);
         const Hit<Scalar> expected = brute_force_hit<Scalar>(scene, ray, kNoPrimitive);
         const Hit<Scalar> hit = hit_of(scene, ray, kNoPrimitive);
-        ASSERT_EQ(hit.primitive_id, expected.primitive_id) << i;
-        ASSERT_EQ(hit.t, expected.t) << i;
-        hits += hit.primitive_id != kNoPrimitive ? 1 : 0;
-        const Occlusion<Scalar> at_hit{hit.t, static_cast<std::int32_t>(hit.primitive_id)};
         NoTestCount work;
-        EXPECT_FALSE(is_occluded<kEverything>(scene, ray, kNoPrimitive, at_hit, work))
-            << "nothing is before the closest";
-        if (hit.primitive_id == kNoPrimitive) continue;
-        EXPECT_TRUE(
-            is_occluded<kEverything>(scene, ray, kNoPrimitive, Occlusion<Scalar>{2 * hit.t, kNoPrimitive}, work));
-    }
-    EXPECT_GT(hits, 5000);
+        const auto is_hidden = [&](Scalar t, Int<Scalar> id) {
+            const Occlusion<Scalar> light{t, static_cast<std::int32_t>(id)};
+            return is_occluded<kEverything>(scene, ray, kNoPrimitive, light, work);
+        };
+        return hit.primitive_id != expected.primitive_id || hit.t != expected.t || is_hidden(hit.t, hit.primitive_id) ||
+               (hit.primitive_id != kNoPrimitive && !is_hidden(2 * hit.t, kNoPrimitive));
+    };
+    EXPECT_EQ(count_of(rays, 54, differs), 0);
+    const auto hits = [&](RandomInputs& inputs, std::int64_t) {
+        return hit_of(scene, ray_of(inputs), kNoPrimitive).primitive_id != kNoPrimitive;
+    };
+    EXPECT_GT(count_of(rays, 54, hits), rays / 4);
 }
 
 /// By the determinant of Moeller and Trumbore, in long double.
