@@ -99,13 +99,13 @@ EmbreeScene::EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions
     attach(spheres_, scene.features.motion, functions.sphere);
     attach(quads_, false, functions.quad);
     attach(triangles_, false, functions.triangle);
-    if (triangles == EmbreeTriangles::Embrees) attach_triangles(scene);
+    if (triangles == EmbreeTriangles::Embrees) attach_triangles(scene, functions.pass_light);
     rtcCommitScene(scene_.get());
     if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree refused the scene");
 }
 
 /// All in one geometry, so that primID counts as ids do. Those in no tree, which have no area, become points.
-void EmbreeScene::attach_triangles(const CompiledScene<float>& scene) {
+void EmbreeScene::attach_triangles(const CompiledScene<float>& scene, RTCFilterFunctionN pass_light) {
     if (scene.triangles.empty()) return;
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
     vertex_ids_.resize(scene.triangles.size());
@@ -121,6 +121,10 @@ void EmbreeScene::attach_triangles(const CompiledScene<float>& scene) {
                                sizeof(VertexRow<float>), scene.vertices.size());
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, vertex_ids_.data(), 0,
                                sizeof(vertex_ids_[0]), vertex_ids_.size());
+    if (scene.light_weights.size() > static_cast<std::size_t>(first_triangle_)) {  // triangles are lights
+        rtcSetGeometryUserData(geometry, &first_triangle_);
+        rtcSetGeometryOccludedFilterFunction(geometry, pass_light);
+    }
     finish(geometry);
 }
 

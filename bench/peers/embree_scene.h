@@ -5,21 +5,17 @@
 /// Called by the tracers of bench/peers/. Immutable once made, and safe to trace from several threads.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <array>
 #include <memory>
 #include <type_traits>
 #include <vector>
 
+#include "bench/peers/embree_calls.h"
 #include "core/geometry/occlusion.h"
 #include "core/shading/compiled_scene.h"
 #include "wavefront/wide_rays.h"
 
 namespace raypool::peers {
-
-/// A packet: as many rays as fill a register, 16 with AVX-512, else 8.
-using Packet = stdx::native_simd<float>;
 
 /// Whose test finds the hits on triangles.
 enum class EmbreeTriangles : bool {
@@ -27,62 +23,6 @@ enum class EmbreeTriangles : bool {
     Embrees,  ///< RTC_GEOMETRY_TYPE_TRIANGLE in a robust scene: closed along edges, and distances are rounded in
               ///< another way
 };
-
-/// What Embree has for so many rays at a time: its structures, and its calls.
-template <int lanes>
-struct EmbreeCalls;
-template <>
-struct EmbreeCalls<1> {
-    using RayHit = RTCRayHit;
-    using ShadowRay = RTCRay;
-    static void trace(const int*, RTCScene scene, RTCIntersectContext* context, RayHit* ray) {
-        rtcIntersect1(scene, context, ray);
-    }
-    static void trace(const int*, RTCScene scene, RTCIntersectContext* context, ShadowRay* ray) {
-        rtcOccluded1(scene, context, ray);
-    }
-};
-template <>
-struct EmbreeCalls<8> {
-    using RayHit = RTCRayHit8;
-    using ShadowRay = RTCRay8;
-    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, RayHit* rays) {
-        rtcIntersect8(valid, scene, context, rays);
-    }
-    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, ShadowRay* rays) {
-        rtcOccluded8(valid, scene, context, rays);
-    }
-};
-template <>
-struct EmbreeCalls<16> {
-    using RayHit = RTCRayHit16;
-    using ShadowRay = RTCRay16;
-    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, RayHit* rays) {
-        rtcIntersect16(valid, scene, context, rays);
-    }
-    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, ShadowRay* rays) {
-        rtcOccluded16(valid, scene, context, rays);
-    }
-};
-
-/// Embree's rays and their hits, of a float or a Packet. Of a hit, primID and geomID are used: that of Embree's own
-/// triangles with the number of one, or else none with the id of a primitive.
-template <class Real>
-using RayHit = typename EmbreeCalls<kLanes<Real>>::RayHit;
-/// Its rays toward lights.
-template <class Real>
-using ShadowRay = typename EmbreeCalls<kLanes<Real>>::ShadowRay;
-
-/// A field of these as the kernels take it.
-template <class T>
-RAYPOOL_INLINE T get(const auto& field) {
-    return std::bit_cast<T>(field);
-}
-template <class T>
-RAYPOOL_INLINE void set(auto& field, const T& value) {
-    static_assert(sizeof(field) == sizeof(value));
-    std::memcpy(&field, &value, sizeof(field));
-}
 
 /// What a call of Embree hands on to the kernels: Embree knows the context alone, which comes first.
 template <class Real>
@@ -113,17 +53,29 @@ struct ShapeFunctions {
     OfKind sphere;
     OfKind quad;
     OfKind triangle;
+    RTCFilterFunctionN pass_light;  ///< of Embree's own triangles
 
     template <Features features, class Real>
     static ShapeFunctions make() {
         return {of_kind<features, Real, SphereBlock<float, 1>>(), of_kind<features, Real, PlanarBlock<float, 1>>(),
-                of_kind<features, Real, TriangleBlock<float, 1>>()};
+                of_kind<features, Real, TriangleBlock<float, 1>>(), pass_light_of<Real>};
     }
 
   private:
     template <Features features, class Real, class Block>
     static OfKind of_kind() {
         return {intersect<features, Real, Block>, occlude<features, Real, Block>};
+    }
+
+    /// Lets shadow rays through the triangle that is their light.
+    template <class Real>
+    static void pass_light_of(const RTCFilterFunctionNArguments* args) {
+        const auto& query = *reinterpret_cast<const Query<Real>*>(args->context);
+        const std::int32_t first_triangle = *static_cast<const std::int32_t*>(args->geometryUserPtr);
+        for (unsigned i = 0; i < args->N; ++i) {
+            const auto number = static_cast<std::int32_t>(RTCHitN_primID(args->hit, args->N, i));
+            if (first_triangle + number == lane(query.light.primitive_id, static_cast<int>(i))) args->valid[i] = 0;
+        }
     }
 
     /// Tests a shape against the rays that Embree says are valid.
@@ -210,7 +162,7 @@ class EmbreeScene {
         set(is_valid, valid);
         EmbreeCalls<kLanes<Real>>::trace(is_valid, scene_.get(), &query.context, &to);
     }
-    void attach_triangles(const CompiledScene<float>& scene);
+    void attach_triangles(const CompiledScene<float>& scene, RTCFilterFunctionN pass_light);
     template <class Block>
     void attach(Shapes<Block>& shapes, bool can_move, const ShapeFunctions::OfKind& functions);
     void finish(RTCGeometry geometry);

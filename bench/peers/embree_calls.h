@@ -1,0 +1,73 @@
+/// Embree's structures and calls by the number of rays, and how kernels read and write its fields.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <bit>
+#include <cstring>
+
+#include "core/math/real.h"
+#include "core/math/real_wide.h"
+
+namespace raypool::peers {
+
+/// A packet: as many rays as fill a register, 16 with AVX-512, else 8.
+using Packet = stdx::native_simd<float>;
+
+/// What Embree has for so many rays at a time: its structures, and its calls.
+template <int lanes>
+struct EmbreeCalls;
+template <>
+struct EmbreeCalls<1> {
+    using RayHit = RTCRayHit;
+    using ShadowRay = RTCRay;
+    static void trace(const int*, RTCScene scene, RTCIntersectContext* context, RayHit* ray) {
+        rtcIntersect1(scene, context, ray);
+    }
+    static void trace(const int*, RTCScene scene, RTCIntersectContext* context, ShadowRay* ray) {
+        rtcOccluded1(scene, context, ray);
+    }
+};
+template <>
+struct EmbreeCalls<8> {
+    using RayHit = RTCRayHit8;
+    using ShadowRay = RTCRay8;
+    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, RayHit* rays) {
+        rtcIntersect8(valid, scene, context, rays);
+    }
+    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, ShadowRay* rays) {
+        rtcOccluded8(valid, scene, context, rays);
+    }
+};
+template <>
+struct EmbreeCalls<16> {
+    using RayHit = RTCRayHit16;
+    using ShadowRay = RTCRay16;
+    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, RayHit* rays) {
+        rtcIntersect16(valid, scene, context, rays);
+    }
+    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, ShadowRay* rays) {
+        rtcOccluded16(valid, scene, context, rays);
+    }
+};
+
+/// Embree's rays and their hits, of a float or a Packet. Of a hit, primID and geomID are used: that of Embree's own
+/// triangles with the number of one, or else none with the id of a primitive.
+template <class Real>
+using RayHit = typename EmbreeCalls<kLanes<Real>>::RayHit;
+/// Its rays toward lights.
+template <class Real>
+using ShadowRay = typename EmbreeCalls<kLanes<Real>>::ShadowRay;
+
+/// A field of these as the kernels take it.
+template <class T>
+RAYPOOL_INLINE T get(const auto& field) {
+    return std::bit_cast<T>(field);
+}
+template <class T>
+RAYPOOL_INLINE void set(auto& field, const T& value) {
+    static_assert(sizeof(field) == sizeof(value));
+    std::memcpy(&field, &value, sizeof(field));
+}
+
+}  // namespace raypool::peers
