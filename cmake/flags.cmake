@@ -37,6 +37,7 @@ target_compile_options(raypool_warnings INTERFACE -Wall -Wextra $<$<BOOL:${RAYPO
 add_library(raypool_frugal INTERFACE)
 target_compile_options(raypool_frugal INTERFACE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-expand=10>)
 if(RAYPOOL_SANITIZE)
+  target_compile_definitions(raypool_flags INTERFACE RAYPOOL_SANITIZED)
   target_compile_options(raypool_warnings INTERFACE -fsanitize=${RAYPOOL_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=all)
   target_link_options(raypool_warnings INTERFACE -fsanitize=${RAYPOOL_SANITIZE})

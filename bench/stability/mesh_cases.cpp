@@ -144,7 +144,8 @@ constexpr auto kSelfShadow = []<class Scalar>(const auto& is_seen, double edge, 
     const CompiledScene<Scalar> scene = compile<Scalar>(test::scene_of(test::smooth_icosphere(levels)));
     return share_of(rays, RandomInputs(123), [&](RandomInputs& random) {
         const Vec3<Scalar> outside = Scalar(2) * random.direction<Scalar>();
-        const Ray<Scalar> ray{outside, unit<Scalar>(Scalar(0.5) * random.point<Scalar>(1) - outside), 0};
+        // A cube so small lies within an icosahedron, so that every ray meets the ball.
+        const Ray<Scalar> ray{outside, unit<Scalar>(Scalar(0.4) * random.point<Scalar>(1) - outside), 0};
         const SmoothHit<Scalar> at(scene, ray, hit_of(scene, ray.origin, ray.direction, kNoPrimitive));
         const Vec3<Scalar> light = random.direction<Scalar>();
         return light.dot(at.point.position) > 0 && !is_seen(scene, at, light);

@@ -14,8 +14,13 @@
 #define RAYPOOL_UNROLL
 #endif
 
-/// A function that is always a part of its caller: what takes or returns a register must be.
+/// A function that is always a part of its caller: what takes or returns a register must be, to be fast. Sanitizers
+/// check every access of the whole that comes of it, which takes a compiler ten times as long.
+#ifdef RAYPOOL_SANITIZED
+#define RAYPOOL_INLINE RAYPOOL_HOST_DEVICE inline
+#else
 #define RAYPOOL_INLINE [[gnu::always_inline]] RAYPOOL_HOST_DEVICE inline
+#endif
 
 namespace raypool {
 
