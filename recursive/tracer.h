@@ -139,11 +139,7 @@ class Tracer {
             lights.arriving_density = path.density;
             lights.depth = depth_;
         }
-        // What is no triangle does not pay for what triangles need. (With lights there would be too much code.)
-        constexpr bool kIsApart = features.triangles && !features.lights;
-        const Scattered<Scalar> out = kIsApart && hit.primitive_id < scene_.first_triangle
-                                          ? scatter_by<without_triangles(features)>(path, hit, lights)
-                                          : scatter_by<features>(path, hit, lights);
+        const Scattered<Scalar> out = scattered(path, hit, lights);
         if constexpr (features.lights) {
             if (lights.has_shadow_ray) follow_shadow_ray(path, out, lights);
         }
@@ -171,6 +167,14 @@ class Tracer {
         return out.is_alive ? Next::OnePath : Next::End;
     }
 
+    /// What is no triangle does not pay for what triangles need. (With lights there would be too much code.)
+    RAYPOOL_INLINE Scattered<Scalar> scattered(const Path& path, const Hit<Scalar>& hit, LightPart<Scalar>& lights) {
+        if constexpr (features.triangles && !features.lights) {
+            if (hit.primitive_id < scene_.first_triangle)
+                return scatter_by<without_triangles(features)>(path, hit, lights);
+        }
+        return scatter_by<features>(path, hit, lights);
+    }
     template <Features code>
     RAYPOOL_INLINE Scattered<Scalar> scatter_by(const Path& path, const Hit<Scalar>& hit, LightPart<Scalar>& lights) {
         return scatter<code, Scalar, splitting>(scene_, path.ray, hit.t, hit.primitive_id, path.throughput, path.key,

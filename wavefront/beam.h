@@ -87,7 +87,8 @@ class Beam {
             Vec3<Boxes> high;
             triangle_box<Boxes>(vertex, low, high);
             const Interval<Boxes> inside = interval(low, high, limit);
-            return mask_bits(inside.enter <= inside.exit && vertex[0][0] == vertex[0][0]);  // a NaN is an unused lane
+            const Mask<Boxes> is_used = vertex[0][0] < Boxes(kInfinity<Boxes>);  // of an unused lane it is a NaN
+            return mask_bits(inside.enter <= inside.exit && is_used);
         } else {
             const Interval<Boxes> inside = interval(block.low, block.high, limit);
             return mask_bits(inside.enter <= inside.exit);
