@@ -28,28 +28,22 @@ struct EmbreeCalls<1> {
         rtcOccluded1(scene, context, ray);
     }
 };
-template <>
-struct EmbreeCalls<8> {
-    using RayHit = RTCRayHit8;
-    using ShadowRay = RTCRay8;
-    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, RayHit* rays) {
-        rtcIntersect8(valid, scene, context, rays);
+/// Those of packets, which `valid` masks: -1 for a ray to trace, else 0.
+template <class Hits, class Rays, auto intersect, auto occlude>
+struct EmbreePacketCalls {
+    using RayHit = Hits;
+    using ShadowRay = Rays;
+    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, Hits* rays) {
+        intersect(valid, scene, context, rays);
     }
-    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, ShadowRay* rays) {
-        rtcOccluded8(valid, scene, context, rays);
-    }
-};
-template <>
-struct EmbreeCalls<16> {
-    using RayHit = RTCRayHit16;
-    using ShadowRay = RTCRay16;
-    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, RayHit* rays) {
-        rtcIntersect16(valid, scene, context, rays);
-    }
-    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, ShadowRay* rays) {
-        rtcOccluded16(valid, scene, context, rays);
+    static void trace(const int* valid, RTCScene scene, RTCIntersectContext* context, Rays* rays) {
+        occlude(valid, scene, context, rays);
     }
 };
+template <>
+struct EmbreeCalls<8> : EmbreePacketCalls<RTCRayHit8, RTCRay8, rtcIntersect8, rtcOccluded8> {};
+template <>
+struct EmbreeCalls<16> : EmbreePacketCalls<RTCRayHit16, RTCRay16, rtcIntersect16, rtcOccluded16> {};
 
 /// Embree's rays and their hits, of a float or a Packet. Of a hit, primID and geomID are used: that of Embree's own
 /// triangles with the number of one, or else none with the id of a primitive.

@@ -249,10 +249,9 @@ RAYPOOL_INLINE Vec3<Real> triangle_start(const Vec3<Real>& from, const TriangleP
 }
 
 /// Of a ray that leaves `point` of primitive `primitive_id`, whose SurfaceRow is `row`, on the side from
-/// which it was met. On a triangle the start lies above it: neighbours share its edges and are not left with it. From
-/// where a smooth one is lifted, a ray leaves nothing, and may meet the triangle. No other place decides where a ray
-/// starts. (Set in place: of a returned one gcc 12 makes a copy, which single rays
-/// feel.)
+/// which it was met. On a triangle the start lies above it: neighbours share its edges and are not left with it. Where
+/// a smooth triangle lifts the start, the ray leaves nothing and may meet the triangle. No other place decides where a
+/// ray starts. (Set in place: of a returned one gcc 12 makes a copy, which single rays feel.)
 template <Features features, class Real>
 RAYPOOL_INLINE void set_ray_start(RayStart<Real>& start, const SurfacePoint<Real>& point,
                                   const TrianglePoint<Real>& triangle, const Int<Real>& primitive_id, const Real* row) {

@@ -1,4 +1,5 @@
-/// Where rays met triangles: which, where on them, and what is smooth about them. Called by interaction.h alone.
+/// Where rays met triangles: which, where on them, and what is smooth about them. Called by interaction.h and
+/// lights.h.
 #pragma once
 
 #include <array>

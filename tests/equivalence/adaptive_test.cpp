@@ -50,7 +50,7 @@ TEST_P(AdaptiveImage, IsTheSameForEveryEngineThreadCountAndPool) {
     const auto [least, most] = std::minmax_element(expected.sample_counts.begin(), expected.sample_counts.end());
     ASSERT_LT(*least, *most) << "the case must adapt";
 
-    EveryNth some(5);
+    EveryNth some(7);
     const auto check = [&](const Engine& engine, const std::string& what) {
         if (!some.takes_next()) return;
         EXPECT_EQ(adapt(engine, scene, settings, error), expected) << what << ", " << settings.threads << " threads";

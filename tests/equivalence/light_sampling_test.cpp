@@ -15,7 +15,8 @@ namespace {
 class LightSampledImage : public testing::TestWithParam<const char*> {
   protected:
     template <class Scalar>
-    static void expect_one_image(LightSampling sampling, int split_depth, Sampler sampler, bool roulette) {
+    static void expect_one_image(EveryNth& some, LightSampling sampling, int split_depth, Sampler sampler,
+                                 bool roulette) {
         const std::string name = GetParam();
         const CompiledScene<Scalar> scene = compile<Scalar>(small_scene(name, 20));
         RenderSettings settings;
@@ -26,7 +27,6 @@ class LightSampledImage : public testing::TestWithParam<const char*> {
         settings.roulette = roulette;
         const Rendered expected = render(recursive::RecursiveEngine(), scene, settings);
         EXPECT_GT(expected.report.total(&ThreadReport::shadow_rays), 0);
-        EveryNth some(5);
         const auto check = [&](const Engine& engine, const RenderSettings& how, const std::string& what) {
             if (!some.takes_next()) return;
             const Rendered got = render(engine, scene, how);
@@ -55,11 +55,12 @@ class LightSampledImage : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(LightSampledImage, IsTheSameInEveryEngine) {
+    EveryNth some(5);
     for (const LightSampling sampling : {LightSampling::Light, LightSampling::Mis}) {
-        expect_one_image<float>(sampling, 0, Sampler::Independent, false);
-        expect_one_image<float>(sampling, 2, Sampler::Sobol, true);
+        expect_one_image<float>(some, sampling, 0, Sampler::Independent, false);
+        expect_one_image<float>(some, sampling, 2, Sampler::Sobol, true);
     }
-    expect_one_image<double>(LightSampling::Mis, 0, Sampler::Independent, false);
+    expect_one_image<double>(some, LightSampling::Mis, 0, Sampler::Independent, false);
 }
 
 /// Code that has light sampling makes today's image where it is off.

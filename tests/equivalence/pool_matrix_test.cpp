@@ -143,7 +143,7 @@ TEST_P(PoolMatrix, EveryPoolMakesTheImageThatRecursionMakes) {
 template <class Scalar>
 void expect_one_image_of_all_rungs(const PoolCase& test) {
     const CompiledScene<Scalar> scene = compile<Scalar>(small_scene(test.scene, test.width, test.height));
-    EveryNth some(5);
+    EveryNth some(7);
     for (const Sampler sampler : {Sampler::Independent, Sampler::Sobol}) {
         for (const bool roulette : {false, true}) {
             for (const int split_depth : {0, 2}) {
