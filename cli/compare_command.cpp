@@ -78,7 +78,7 @@ std::vector<Contender> contenders([[maybe_unused]] const CompiledScene<float>& s
     for (const wavefront::Rung& rung : wavefront::ladder(settings.threads))
         add(rung.name, rung.step, std::make_shared<wavefront::WavefrontEngine>(rung.pool), to_json(rung.pool));
 #ifdef RAYPOOL_HAS_EMBREE
-    if (settings.split_depth == 0) {
+    if (settings.split_depth == 0 && scene.instance_tree.blocks.empty()) {
         for (const auto& engine : peers::embree_engines(!scene.triangles.empty())) {
             if (engine->is_independent(scene)) {
                 add(engine->name(), "the triangles and the traversal of Embree 3", engine, nullptr, Check::SameMean);

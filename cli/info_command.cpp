@@ -60,6 +60,18 @@ void print_hidden(const Scene& scene, const std::vector<bool>& is_hidden) {
               count > kMostNamed ? ", ..." : "");
 }
 
+/// How many of the meshes are instances, and how many triangles stand for theirs.
+std::string instances_text(const Scene& scene) {
+    std::size_t instances = 0;
+    std::size_t triangles = 0;
+    for (const MeshShape& shape : scene.meshes) {
+        if (!scene.is_instance(shape)) continue;
+        ++instances;
+        triangles += shape.mesh->triangles.size();
+    }
+    return instances == 0 ? "" : fmt::format("; {} of them instances, which show {} triangles", instances, triangles);
+}
+
 void info(const std::string& name) {
     const Scene scene = load_scene(name);
     const Coincidence coincidence = find_coincidence<float>(scene);
@@ -73,8 +85,8 @@ void info(const std::string& name) {
     print("shapes: {} spheres, {} quads, {} planes; {} materials, {} textures\n", scene.spheres.size(),
           scene.quads.size(), scene.planes.size(), scene.materials.size(), scene.textures.size());
     if (!scene.meshes.empty())
-        print("meshes: {}, of {} triangles and {} vertices\n", scene.meshes.size(), compiled.triangles.size(),
-              compiled.vertices.size());
+        print("meshes: {}, of {} triangles and {} vertices{}\n", scene.meshes.size(), compiled.triangles.size(),
+              compiled.vertices.size(), instances_text(scene));
     print_hidden(scene, coincidence.is_hidden);
     print("features: {}\n", listed(compiled.features));
     const auto code = [](const Features& features, std::size_t first) {
@@ -103,6 +115,9 @@ void info(const std::string& name) {
     print_tree("sphere", compiled.sphere_tree);
     print_tree("quad", compiled.quad_tree);
     print_tree("triangle", compiled.triangle_tree);
+    print_tree("object", compiled.instance_tree.objects);
+    if (!compiled.instance_tree.nodes.empty())
+        print("instance tree: {} nodes, depth {}\n", compiled.instance_tree.nodes.size(), compiled.instance_tree.depth);
     print("pool of a thread: {} records, for trees of {} and a second-level cache of {}\n",
           wavefront::pool_capacity(wavefront::PoolSettings{}, compiled), bytes_text(wavefront::tree_bytes(compiled)),
           bytes_text(second_level_cache()));

@@ -12,12 +12,12 @@
 
 namespace raypool {
 
-/// A built-in scene, or `textures`, `sky_image`, `solids` or `smooth`, at another width, in its own shape unless a
-/// height is given.
+/// A built-in scene, or `textures`, `sky_image`, `instances`, `solids` or `smooth`, at another width, in its own shape
+/// unless a height is given.
 inline Scene small_scene(const std::string& name, std::int64_t width, std::int64_t height = 0) {
-    const char* const folder = name == "textures" || name == "sky_image" ? "textures/"
-                               : name == "solids" || name == "smooth"    ? "meshes/"
-                                                                         : nullptr;
+    const char* const folder = name == "textures" || name == "sky_image"                     ? "textures/"
+                               : name == "instances" || name == "solids" || name == "smooth" ? "meshes/"
+                                                                                             : nullptr;
     Scene scene = folder == nullptr ? builtin_scene(name)
                                     : read_scene(RAYPOOL_SOURCE_DIR "/scenes/" + std::string(folder) + name + ".json");
     scene.height = height > 0 ? height : std::max<std::int64_t>(1, scene.height * width / scene.width);

@@ -177,7 +177,7 @@ RAYPOOL_INLINE void walk_beam(const Tree& tree, const Beam<Wide<ScalarOf<Real>, 
     Entry* top = stack;
     std::int32_t child = 0;
     const auto ready = [&] {
-        if constexpr (IsTriangles<typename Tree::Block>) {
+        if constexpr (IsTriangles<typename Tree::Block> || IsInstance<typename Tree::Block>) {
             std::array<Sheared<WideRays<Real>, Real>, kBeamPackets<Real>> all;
             for (int p = 0; p < packets; ++p) all[p] = ready_for<typename Tree::Block, Real>(rays[p]);
             return all;
@@ -203,11 +203,17 @@ RAYPOOL_INLINE void walk_beam(const Tree& tree, const Beam<Wide<ScalarOf<Real>, 
         } else {
             const auto& block = tree.blocks[static_cast<std::size_t>(~child)];
             bool is_improved = false;
-            for (unsigned bits = beam.template may_meet<features>(block, limit); bits != 0; bits &= bits - 1) {
-                const int i = std::countr_zero(bits);
-                work.count_primitives(count);
+            if constexpr (IsInstance<typename Tree::Block>) {  // whose space the beam is not in
                 for (int p = 0; p < packets; ++p)
-                    is_improved |= any(intersect_lane<features, InBox::Yes, Real>(block, i, ready[p], hit[p]));
+                    meet_instance<features, Real>(tree.objects, block, ready[p], Mask<Real>(true), hit[p], work);
+                is_improved = true;
+            } else {
+                for (unsigned bits = beam.template may_meet<features>(block, limit); bits != 0; bits &= bits - 1) {
+                    const int i = std::countr_zero(bits);
+                    work.count_primitives(count);
+                    for (int p = 0; p < packets; ++p)
+                        is_improved |= any(intersect_lane<features, InBox::Yes, Real>(block, i, ready[p], hit[p]));
+                }
             }
             if (is_improved) limit = farthest();
         }
@@ -247,8 +253,10 @@ RAYPOOL_INLINE void closest_hits(const ShapeView<ScalarOf<Real>>& scene, const W
                                     work);
         detail::walk_beam<features, Real>(scene.quad_tree, beam, rays, hit, packets, count, work);
     }
-    if constexpr (features.triangles)
+    if constexpr (features.triangles) {
         detail::walk_beam<features, Real>(scene.triangle_tree, beam, rays, hit, packets, count, work);
+        detail::walk_beam<features, Real>(scene.instance_tree, beam, rays, hit, packets, count, work);
+    }
     detail::walk_beam<features, Real>(scene.sphere_tree, beam, rays, hit, packets, count, work);
 }
 

@@ -23,7 +23,8 @@ std::size_t tree_bytes(const SceneView<Scalar>& scene) {
         for (const auto& along_axis : tree.motion) all += along_axis.size() * sizeof(along_axis[0]);
         return all;
     };
-    return bytes(scene.sphere_tree) + bytes(scene.quad_tree) + bytes(scene.triangle_tree);
+    return bytes(scene.sphere_tree) + bytes(scene.quad_tree) + bytes(scene.triangle_tree) + bytes(scene.instance_tree) +
+           bytes(scene.instance_tree.objects);
 }
 
 /// Records of the pool of a thread: a power of two in [kThreadCapacity, 16 kThreadCapacity], for trees of so many bytes

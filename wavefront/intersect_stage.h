@@ -75,8 +75,10 @@ class IntersectStage {
             const StreamHits<Scalar> hits = stream_.hits();
             if constexpr (features.planar)
                 detail::walk_stream<features, Real>(scene_.quad_tree, hits, count, lists_, intersection_, work_);
-            if constexpr (features.triangles)
+            if constexpr (features.triangles) {
                 detail::walk_stream<features, Real>(scene_.triangle_tree, hits, count, lists_, intersection_, work_);
+                detail::walk_stream<features, Real>(scene_.instance_tree, hits, count, lists_, intersection_, work_);
+            }
             detail::walk_stream<features, Real>(scene_.sphere_tree, hits, count, lists_, intersection_, work_);
         }
     }

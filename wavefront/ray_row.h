@@ -1,6 +1,7 @@
 /// A ray as streams read it: a row of 12 scalars, so that any sixteen rays can be fetched by transposing.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/geometry/occlusion.h"
@@ -45,6 +46,16 @@ struct ShadowHits : StreamHits<Scalar> {
     [[nodiscard]] RAYPOOL_INLINE bool is_hidden(std::uint32_t ray) const { return this->distance[ray] < Scalar(0); }
 };
 
+/// A ray in the space of an instance's object: as boxes see it, and where the row of the ray itself begins.
+template <class Scalar>
+struct alignas(16) ObjectRow {
+    enum Column { kScale = 0, kDistance = 3, kNearOrigin = 4, kItself = 7, kFarOrigin = 8, kColumns = 12 };
+    /// As RayRow's, and ObjectRay's; kItself: the bits of a whole number, counted in scalars.
+    Scalar value[kColumns];
+
+    static_assert(int{kColumns} == RayRow<Scalar>::kColumns, "lists count in either's");
+};
+
 /// Three columns from `first` on.
 template <class Real>
 RAYPOOL_INLINE Vec3<Real> columns(const Real* row, int first) {
@@ -60,6 +71,24 @@ RAYPOOL_INLINE WideRays<Real> rays_of_rows(const Real* row) {
     rays.inverse = inverse_of_scale<Real>(columns(row, Row::kScale));
     rays.leaving_id = bits_of<Real>(row[Row::kLeaving]);
     return rays;
+}
+
+/// The columns of ObjectRows.
+template <class Real>
+RAYPOOL_INLINE std::array<Real, ObjectRow<ScalarOf<Real>>::kColumns> object_columns(const ObjectRay<Real>& ray,
+                                                                                    const Real& distance,
+                                                                                    const Int<Real>& itself) {
+    const Vec3<Real>& near = ray.near_origin;
+    const Vec3<Real>& far = ray.far_origin;
+    return {ray.scale[0], ray.scale[1],          ray.scale[2], distance, near[0], near[1],
+            near[2],      of_bits<Real>(itself), far[0],       far[1],   far[2],  Real(0)};
+}
+/// Rays of transposed ObjectRows.
+template <class Real>
+RAYPOOL_INLINE ObjectRay<Real> object_rays_of_rows(const Real* row) {
+    using Row = ObjectRow<ScalarOf<Real>>;
+    const Vec3<Real> scale = columns(row, Row::kScale);
+    return {columns(row, Row::kNearOrigin), columns(row, Row::kFarOrigin), scale, inverse_of_scale<Real>(scale)};
 }
 
 }  // namespace raypool::wavefront

@@ -121,8 +121,10 @@ class ShadowStage {
         if constexpr (Simd<Real>) {
             if constexpr (features.planar)
                 detail::walk_stream<features, Real>(scene_.quad_tree, hits(), count(), lists_, intersection_, work);
-            if constexpr (features.triangles)
+            if constexpr (features.triangles) {
                 detail::walk_stream<features, Real>(scene_.triangle_tree, hits(), count(), lists_, intersection_, work);
+                detail::walk_stream<features, Real>(scene_.instance_tree, hits(), count(), lists_, intersection_, work);
+            }
             detail::walk_stream<features, Real>(scene_.sphere_tree, hits(), count(), lists_, intersection_, work);
         }
     }

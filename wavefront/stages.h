@@ -41,7 +41,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
     /// The memory of one of these.
     static std::size_t bytes(const RenderContext<Scalar>& context, std::size_t most_records) {
         const StageSizes size = sizes(context, most_records);
-        return StreamLists<Scalar>::bytes(size.list, size.tree_depth) + RayStream<Scalar>::bytes(most_records) +
+        return StreamLists<Scalar>::bytes(size.list, size.trees) + RayStream<Scalar>::bytes(most_records) +
                Records::bytes(size.overflow) + MaterialSort<Scalar>::bytes(context.pool.sort, most_records) +
                Contributions<Scalar>::bytes(size.contributions) + Shadow::bytes(size.shadow_rays);
     }
@@ -157,7 +157,7 @@ class Stages final : public RecordStages<record_features(features), ScalarOf<Rea
         : Base(context, size.overflow, thread),
           context_(context),
           thread_(thread),
-          lists_(size.list, size.tree_depth),
+          lists_(size.list, size.trees),
           intersect_(context.scene, context.pool.intersection, most_records, lists_),
           shadow_(context.scene, context.pool.intersection, size.shadow_rays, lists_),
           sort_(context.pool.sort, most_records),

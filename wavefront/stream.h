@@ -3,88 +3,38 @@
 /// After Barringer and Akenine-Moeller, "Dynamic Ray Stream Traversal", SIGGRAPH 2014. A visit to a node takes the list
 /// of rays that entered it, a register's worth at a time, tests each child's box against them, and appends those that
 /// enter to the child's list. Incoherent rays so fill whole registers as long as lists are long, which is what a pool
-/// is for; where a list has become short, its rays go on one by one, each against a register of boxes. Rays are read as
-/// rows, so that any sixteen of them can be fetched by transposing. A list holds where rows begin, counted in scalars.
+/// is for; where a list has become short, its rays go on one by one, each against a register of boxes.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <vector>
 
 #include "wavefront/settings.h"
 #include "wavefront/sphere_pairs.h"
+#include "wavefront/stream_lists.h"
+#include "wavefront/stream_rays.h"
 
 namespace raypool::wavefront {
-
-/// The lists of rays on the way down a tree: scratch, which streams of one thread share.
-template <class Scalar>
-class StreamLists {
-  public:
-    /// For streams of up to `capacity` rays.
-    StreamLists(std::size_t capacity, int tree_depth)
-        : lists_(std::make_unique_for_overwrite<std::uint32_t[]>(size(capacity, tree_depth))) {}
-    static std::size_t bytes(std::size_t capacity, int tree_depth) {
-        return size(capacity, tree_depth) * sizeof(std::uint32_t);
-    }
-    [[nodiscard]] std::uint32_t* data() const { return lists_.get(); }
-
-  private:
-    /// The list at the root, one for each child of a node on the way down, and a leaf's pairs.
-    static std::size_t size(std::size_t capacity, int tree_depth) {
-        return (capacity + kMostLanes) * (1 + kTreeWidth<Scalar> * (1 + static_cast<std::size_t>(tree_depth)));
-    }
-    static constexpr std::size_t kMostLanes = 16;
-
-    std::unique_ptr<std::uint32_t[]> lists_;
-};
-
-/// Up to `capacity` rays of one thread, and the hits they found.
-template <class Scalar>
-class RayStream {
-  public:
-    /// More rays than this have no numbers for their pairs with shapes (SpherePairs).
-    static constexpr std::size_t kMostRays = SpherePairs<Scalar>::kMostRays;
-
-    explicit RayStream(std::size_t capacity)
-        : rows_(capacity + kMostLanes), distance_(capacity + kMostLanes), primitive_id_(capacity + kMostLanes) {}
-
-    static std::size_t bytes(std::size_t capacity) {
-        return (capacity + kMostLanes) * (sizeof(RayRow<Scalar>) + sizeof(Scalar) + sizeof(std::int32_t));
-    }
-
-    RayRow<Scalar>* rows() { return rows_.data(); }
-    Scalar* distance() { return distance_.data(); }
-    std::int32_t* primitive_id() { return primitive_id_.data(); }
-    StreamHits<Scalar> hits() { return {rows(), distance(), primitive_id()}; }
-
-  private:
-    static constexpr std::size_t kMostLanes = 16;
-
-    std::vector<RayRow<Scalar>> rows_;
-    std::vector<Scalar> distance_;
-    std::vector<std::int32_t> primitive_id_;
-};
 
 namespace detail {
 
 /// Lists shorter than this are walked ray by ray. From a prototype on triangles, in which the length hardly mattered.
 inline constexpr std::size_t kShortList = 12;
 
-/// `Hits` is StreamHits, for closest hits, or ShadowHits.
-template <Features features, class Real, class Tree, class Hits, class Work>
+/// `Rays` is StandingRays, or PlacedStreamRays.
+template <Features features, class Real, class Tree, class Rays, class Work>
 class StreamWalk {
     using S = ScalarOf<Real>;
     using Row = RayRow<S>;
     static constexpr int kRays = kLanes<Real>;
     static constexpr int kWidth = kTreeWidth<S>;
-    static constexpr bool kIsShadow = std::same_as<Hits, ShadowHits<S>>;
+    static constexpr bool kIsShadow = Rays::kIsShadow;
     static constexpr bool kCountsLists = requires(Work work) { work.count_list(1, 1, true); };
     static constexpr std::int32_t kLargestId = std::numeric_limits<std::int32_t>::max();
 
   public:
-    StreamWalk(const Tree& tree, const Hits& hits, Intersection intersection, Work& work)
-        : tree_(tree), hits_(hits), intersection_(intersection), work_(work) {}
+    StreamWalk(const Tree& tree, const Rays& rays, const StreamLists<S>& lists, Intersection intersection, Work& work)
+        : tree_(tree), rays_(rays), lists_(lists), intersection_(intersection), work_(work) {}
 
     /// Takes list[0 .. count), which has room for a register beyond its end; `free` is scratch behind it.
     void visit(std::int32_t child, std::uint32_t* list, std::size_t count, std::uint32_t* free) {
@@ -113,12 +63,9 @@ class StreamWalk {
         for (; children < kWidth && node.child[children] != 0; ++children)
             end[children] = free + static_cast<std::size_t>(children) * room;
         for (std::size_t first = 0; first < count; first += kRays) {
-            Real row[8];
-            load_rows_at<8, Real>(hits_.rows->value, list + first, row);
-            WideRays<Real> rays;
-            rays.ray.origin = columns(row, Row::kOrigin);
-            rays.ray.time = row[Row::kTime];
-            rays.inverse = inverse_of_scale<Real>(columns(row, Row::kScale));
+            Real row[Rays::kBoxColumns];
+            load_rows_at<Rays::kBoxColumns, Real>(rays_.box_rows(), list + first, row);
+            const auto rays = Rays::template boxes_see<Real>(row);
             Real limit = row[Row::kDistance];
             unsigned valid = (1U << kRays) - 1;
             if (first + kRays > count) [[unlikely]] {
@@ -127,7 +74,7 @@ class StreamWalk {
             }
             const Uint32<Real> offset(list + first, stdx::element_aligned);
             for (int i = 0; i < children; ++i) {
-                const Interval<Real> inside = child_interval<Real>(bounds, index, i, rays, limit);
+                const Interval<Real> inside = child_interval<Real>(bounds, index, i, rays, row[Row::kTime], limit);
                 const unsigned bits = mask_bits(inside.enter <= inside.exit);
                 work_.count_boxes(node, i, valid);
                 compress_store(end[i], offset, bits);
@@ -136,13 +83,13 @@ class StreamWalk {
         }
 
         // Nearest child first, as the first ray of the list sees it.
-        const S* ray = hits_.rows[list[0] / Row::kColumns].value;
+        const Vec3<S> direction = rays_.direction_of(list[0]);
         int order[kWidth];
         S place[kWidth];
         for (int i = 0; i < children; ++i) {
             place[i] = 0;
             for (int axis = 0; axis < 3; ++axis)
-                place[i] += (node.bounds[axis][0][i] + node.bounds[axis][1][i]) * ray[Row::kDirection + axis];
+                place[i] += (node.bounds[axis][0][i] + node.bounds[axis][1][i]) * direction[axis];
             int k = i;
             for (; k > 0 && place[order[k - 1]] > place[i]; --k) order[k] = order[k - 1];
             order[k] = i;
@@ -162,24 +109,25 @@ class StreamWalk {
         if constexpr (requires { block.radius; }) {
             if (intersection_ == Intersection::Pairs) {
                 SpherePairs<S> pairs(block, free);
-                pairs.template find_in_list<features, Real>(hits_.rows, list, count, work_);
-                pairs.template meet<features, InBox::Yes, Real>(hits_);
+                pairs.template find_in_list<features, Real>(rays_.hits.rows, list, count, work_);
+                pairs.template meet<features, InBox::Yes, Real>(rays_.hits);
                 return;
             }
         }
         for (std::size_t first = 0; first < count; first += kRays) {
+            std::uint32_t scratch[kRays];
             Real row[Row::kColumns];
-            load_rows_at<Row::kColumns, Real>(hits_.rows->value, list + first, row);
+            load_rows_at<Row::kColumns, Real>(rays_.hits.rows->value, rays_.rows_of(list + first, scratch), row);
             const WideRays<Real> loaded = rays_of_rows<Real>(row);
-            const auto& rays = ready_for<Block, Real>(loaded);
+            const auto& rays = rays_.template shapes_see<Block, Real>(loaded);
             Hit<Real> hit;
             hit.t = row[Row::kDistance];
             hit.primitive_id = Int<Real>(kLargestId);  // a tie with the hit so far is settled below, where it is rare
             const auto tell = [&](unsigned bits, const Hit<Real>& found) {
                 for (; bits != 0; bits &= bits - 1) {
                     const int i = std::countr_zero(bits);
-                    const std::uint32_t ray = list[first + static_cast<std::size_t>(i)] / Row::kColumns;
-                    hits_.keep_closer(ray, lane(found.t, i), static_cast<std::int32_t>(lane(found.primitive_id, i)));
+                    rays_.keep_closer(list[first + static_cast<std::size_t>(i)], lane(found.t, i),
+                                      static_cast<std::int32_t>(lane(found.primitive_id, i)));
                 }
             };
             Mask<Real> is_improved(false);
@@ -196,27 +144,49 @@ class StreamWalk {
         }
     }
 
+    /// The rays go on in the space of the instance's object, by rows of their own.
+    void visit_leaf(const InstanceRow<S>& instance, const std::uint32_t* list, std::size_t count, std::uint32_t* free) {
+        ObjectRow<S>* const rows = lists_.object_rows();
+        for (std::size_t first = 0; first < count; first += kRays) {
+            Real row[Row::kColumns];
+            load_rows_at<Row::kColumns, Real>(rays_.hits.rows->value, list + first, row);
+            const auto ray = ObjectRay<Real>::of(instance, columns(row, Row::kOrigin), columns(row, Row::kDirection));
+            const Uint32<Real> itself(list + first, stdx::element_aligned);
+            const auto column = object_columns<Real>(ray, row[Row::kDistance], signed_ids<Real>(itself));
+            store_rows<ObjectRow<S>::kColumns, Real>(rows[first].value, column.data());
+        }
+        for (std::size_t i = 0; i < count; ++i) free[i] = static_cast<std::uint32_t>(i * ObjectRow<S>::kColumns);
+        using Objects = typename Tree::Objects;
+        using Placed = PlacedStreamRays<decltype(rays_.hits), S>;
+        StreamWalk<features, Real, Objects, Placed, Work>(tree_.objects, {rays_.hits, rows, instance}, lists_,
+                                                        intersection_, work_)
+            .visit(instance.number(InstanceRow<S>::kRoot), free, count, free + count + kRays);
+    }
+
     /// One ray from `child` down, against a register of boxes or shapes at a time.
     [[gnu::noinline]] void walk_single(std::int32_t child, std::uint32_t offset) {
         using Boxes = Wide<S, kWidth>;
-        const std::uint32_t i = offset / Row::kColumns;
-        const S* row = hits_.rows[i].value;
+        const std::uint32_t i = rays_.row_of(offset) / Row::kColumns;
+        const auto& hits = rays_.hits;
+        const S* row = hits.rows[i].value;
         const Ray<S> ray{columns(row, Row::kOrigin), columns(row, Row::kDirection), row[Row::kTime]};
         const SpreadRay<Boxes> spread(ray, inverse_of_scale<S>(columns(row, Row::kScale)),
                                       static_cast<std::int32_t>(bits_of<S>(row[Row::kLeaving])));
         if constexpr (kIsShadow) {
-            Occlusion<S> light{hits_.distance[i], hits_.primitive_id[i]};
-            raypool::detail::walk<features, Boxes>(tree_, spread, light, work_, child);
-            if (light.is_hidden) hits_.hide(i);
+            Occlusion<S> light{hits.distance[i], hits.primitive_id[i]};
+            rays_.template walk_from<features, Boxes>(child, tree_, spread, light, work_);
+            if (light.is_hidden) hits.hide(i);
         } else {
-            Hit<S> hit{hits_.distance[i], hits_.primitive_id[i]};
-            raypool::detail::walk<features, Boxes>(tree_, spread, hit, work_, child);
-            hits_.set(i, hit.t, static_cast<std::int32_t>(hit.primitive_id));
+            Hit<S> hit{hits.distance[i], hits.primitive_id[i]};
+            rays_.template walk_from<features, Boxes>(child, tree_, spread, hit, work_);
+            hits.set(i, hit.t, static_cast<std::int32_t>(hit.primitive_id));
         }
+        rays_.is_walked(offset);
     }
 
     const Tree& tree_;
-    const Hits hits_;
+    const Rays rays_;
+    const StreamLists<S>& lists_;
     Intersection intersection_;
     Work& work_;
 };
@@ -226,10 +196,10 @@ template <Features features, class Real, class Tree, class Hits, class Work>
 void walk_stream(const Tree& tree, const Hits& hits, std::size_t count, const StreamLists<ScalarOf<Real>>& lists,
                  Intersection intersection, Work& work) {
     if (tree.nodes.empty() || count == 0) return;
-    using Row = RayRow<ScalarOf<Real>>;
+    using S = ScalarOf<Real>;
     std::uint32_t* list = lists.data();
-    for (std::size_t i = 0; i < count; ++i) list[i] = static_cast<std::uint32_t>(i * Row::kColumns);
-    StreamWalk<features, Real, Tree, Hits, Work>(tree, hits, intersection, work)
+    for (std::size_t i = 0; i < count; ++i) list[i] = static_cast<std::uint32_t>(i * RayRow<S>::kColumns);
+    StreamWalk<features, Real, Tree, StandingRays<Hits, S>, Work>(tree, {hits}, lists, intersection, work)
         .visit(0, list, count, list + count + kLanes<Real>);
 }
 

@@ -120,22 +120,22 @@ RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const Wid
     return is_closer;
 }
 
-/// The same for a triangle.
-template <Features features, InBox in_box, class Real, IsTriangles Block>
-RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const Sheared<WideRays<Real>, Real>& rays,
-                                         Hit<Real>& hit) {
+/// The same for a triangle, of rays that are sheared, and placed where it is an object's.
+template <Features features, InBox in_box, class Real, IsTriangles Block, class Rays>
+RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const Rays& rays, Hit<Real>& hit) {
     const std::int32_t id = block.id[lane];
-    std::array<Vec3<Real>, 3> vertex;
-    for (int i = 0; i < 3; ++i) vertex[i] = lane_of<Real>(block.vertex[i], lane);
+    std::array<Vec3<Real>, 3> stored;
+    for (int i = 0; i < 3; ++i) stored[i] = lane_of<Real>(block.vertex[i], lane);
+    std::array<Vec3<Real>, 3> vertex = stored;
+    if constexpr (IsPlaced<Rays>) vertex = rays.placing.points(stored);
     const Ray<Real>& ray = rays.ray;
     const Real t =
         triangle_distance<Real>(ray.origin, rays.shear, vertex, as_mask<Real>(rays.leaving_id == Int<Real>(id)));
     Mask<Real> is_closer = closer<Real>(t, id, hit);
     if (none(is_closer)) return is_closer;
-    Vec3<Real> low;
-    Vec3<Real> high;
-    triangle_box<Real>(vertex, low, high);
-    is_closer = is_closer && is_inside_box<Real>(low, high, ray.origin, rays.inverse, t);
+    is_closer = is_closer && raypool::detail::is_inside_triangle_box<Real>(vertex, ray.origin, rays, t);
+    if constexpr (IsPlaced<Rays>)
+        is_closer = is_closer && raypool::detail::is_inside_object_box<Real>(stored, rays.in_object, t);
     hit.t = select(is_closer, t, hit.t);
     hit.primitive_id = select(is_closer, Int<Real>(id), hit.primitive_id);
     return is_closer;
@@ -144,7 +144,7 @@ RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const She
 /// Rays as the shapes of a tree take them: these, or what is made of them.
 template <class Block, class Real>
 RAYPOOL_INLINE decltype(auto) ready_for(const WideRays<Real>& rays) {
-    if constexpr (IsTriangles<Block>) {
+    if constexpr (IsTriangles<Block> || IsInstance<Block>) {
         return Sheared<WideRays<Real>, Real>{rays, ray_shear<Real>(rays.ray.direction)};
     } else {
         return (rays);
@@ -152,6 +152,19 @@ RAYPOOL_INLINE decltype(auto) ready_for(const WideRays<Real>& rays) {
 }
 template <class Block, class Real>
 void ready_for(const WideRays<Real>&&) = delete;  // what is returned would not outlive it
+
+/// A register of rays as the triangles of an instance take them.
+template <class Real>
+using PlacedRays = Placed<Sheared<WideRays<Real>, Real>, Real>;
+template <class Real>
+RAYPOOL_INLINE PlacedRays<Real> placed_rays(const InstanceRow<ScalarOf<Real>>& instance,
+                                            const Sheared<WideRays<Real>, Real>& rays) {
+    using Row = InstanceRow<ScalarOf<Real>>;
+    PlacedRays<Real> placed{rays, Placing<Real>::of(instance.value + Row::kTransform),
+                            ObjectRay<Real>::of(instance, rays.ray.origin, rays.ray.direction)};
+    placed.leaving_id = placed.leaving_id - Int<Real>(instance.number(Row::kFirstId));
+    return placed;
+}
 
 /// Calls visit(lane) for the lanes of a block that hold a shape.
 template <class Block, class Visit>
@@ -188,18 +201,22 @@ RAYPOOL_INLINE Mask<Real> hidden_by_any(const Blocks& blocks, const WideRays<Rea
 }
 
 /// Where the rays are inside child `lane` of a node, before `limit`.
-template <class Real, class Bounds>
-RAYPOOL_INLINE Interval<Real> child_interval(const Bounds& bounds, std::size_t node, int lane,
-                                             const WideRays<Real>& rays, const Real& limit) {
+template <class Real, class Bounds, class Rays>
+RAYPOOL_INLINE Interval<Real> child_interval(const Bounds& bounds, std::size_t node, int lane, const Rays& rays,
+                                             const Real& time, const Real& limit) {
     Vec3<Real> near;
     Vec3<Real> far;
     for (int i = 0; i < 3; ++i) {
-        const Real low = bounds.template child<Real>(node, lane, i, 0, rays.ray.time);
-        const Real high = bounds.template child<Real>(node, lane, i, 1, rays.ray.time);
+        const Real low = bounds.template child<Real>(node, lane, i, 0, time);
+        const Real high = bounds.template child<Real>(node, lane, i, 1, time);
         near[i] = select(rays.inverse.is_negative[i], high, low);
         far[i] = select(rays.inverse.is_negative[i], low, high);
     }
-    return box_interval<Real>(near, far, rays.ray.origin, rays.inverse, limit);
+    if constexpr (requires { rays.near_origin; }) {
+        return box_interval<Real>(near, far, rays.near_origin, rays.far_origin, rays.inverse, limit);
+    } else {
+        return box_interval<Real>(near, far, rays.ray.origin, rays.inverse, limit);
+    }
 }
 
 }  // namespace raypool::wavefront

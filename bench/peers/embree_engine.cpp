@@ -216,6 +216,7 @@ MakeTracer packet_tracers(const CompiledScene<float>& scene, EmbreeTriangles tri
 std::unique_ptr<RenderSession> EmbreeEngine::begin(const CompiledScene<float>& scene, const RenderSettings& settings,
                                                    Framebuffer& framebuffer) const {
     if (settings.split_depth > 0) throw InputError(name() + ": follows one path at a time; --split-depth must be 0");
+    if (!scene.instance_tree.blocks.empty()) throw InputError(name() + ": has no instances");
     if (settings.count_work) throw InputError(name() + ": Embree does not say which boxes it tests");
     if (settings.cost_image != nullptr) throw InputError(name() + ": has no cost of a pixel");
     const MakeTracer make = dispatch_features(needed_features(scene.features, settings), [&]<Features features>() {

@@ -30,7 +30,7 @@ class EmbreeEngine : public Engine {
         return triangles_ == EmbreeTriangles::Embrees && !scene.triangles.empty();
     }
     /// Builds Embree's trees, in one thread, which the report leaves out as it does compile(). Throws InputError for
-    /// what it has not: split_depth, count_work, a cost image; std::runtime_error where Embree fails.
+    /// what it has not: instances, split_depth, count_work, a cost image; std::runtime_error where Embree fails.
     [[nodiscard]] std::unique_ptr<RenderSession> begin(const CompiledScene<float>&, const RenderSettings&,
                                                        Framebuffer&) const override;
     /// Throws InputError: Embree traces in single precision.

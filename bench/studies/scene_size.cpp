@@ -33,9 +33,11 @@ constexpr const char* kAutomatic = "automatic";
 constexpr const char* kCounted = "cache misses";
 constexpr const char* kLists = "lists";
 
+/// Of meshes those that the peers have not.
+constexpr const char* kInstances = "instances";
 /// What the script scenes/generate strews, and scenes/generate_mesh.
 constexpr const char* kStrewnKinds[] = {"spheres", "quads", "cluster"};
-constexpr const char* kMeshKinds[] = {"field", "room", "terrain", "blob", "needles"};
+constexpr const char* kMeshKinds[] = {"field", "room", "terrain", "blob", "needles", kInstances};
 
 /// A generated scene, made when it is wanted.
 struct SizedScene {
@@ -244,7 +246,7 @@ std::vector<Case> scene_size_cases(const StudyOptions& options) {
                 settings.threads = 1;
 #ifdef RAYPOOL_HAS_EMBREE
                 // Their trees are built for each render, which takes longer than it.
-                if (is_mesh(kind) && depth == depths(options).back()) add_peers(cases, scene, settings, plan.repeats);
+                if (is_mesh(kind) && kind != kInstances && depth == depths(options).back()) add_peers(cases, scene, settings, plan.repeats);
 #endif
                 for (const SizedWay& way : ways) {
                     const SizedRender render{way, scene, settings};

@@ -89,8 +89,7 @@ class Streams {
   public:
     Streams(const CompiledScene<float>& scene, std::size_t capacity)
         : capacity_(capacity),
-          lists_(capacity + kRays,
-                 std::max({scene.sphere_tree.depth, scene.quad_tree.depth, scene.triangle_tree.depth})),
+          lists_(capacity + kRays, wavefront::StreamTrees(scene)),
           intersect_(scene, wavefront::Intersection::Pairs, capacity, lists_),
           shadow_(scene, wavefront::Intersection::Pairs, capacity + kRays, lists_) {
         seen_.reserve(capacity + kRays);

@@ -19,24 +19,25 @@ struct Occlusion {
     RAYPOOL_INLINE void keep_closer(Scalar distance, std::int32_t id) { is_hidden = is_hidden || hides(distance, id); }
 };
 
+template <class Scalar>
+RAYPOOL_INLINE void count_ids_from(Occlusion<Scalar>& light, std::int32_t first) {
+    light.light_id -= first;
+}
+
 namespace detail {
 
 /// From `child` of the tree on, until something hides the light.
-template <Features features, class Real, class Block, class Work>
-RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tree, const SpreadRay<Real>& ray,
-                         Occlusion<ScalarOf<Real>>& light, Work& work, std::int32_t child = 0) {
-    if (tree.nodes.empty()) return;
-    const auto& ready = ready_for<Block, Real>(ray);
-    const TreeBounds<features, TreeView<Block, ScalarOf<Real>, kLanes<Real>>> bounds(tree);
+template <Features features, class Real, class Tree, class Boxes, class Ready, class Work>
+RAYPOOL_INLINE void walk(const Tree& tree, const Boxes& boxes, const Ready& ready, Occlusion<ScalarOf<Real>>& light,
+                         Work& work, std::int32_t child) {
+    const TreeBounds<features, Tree> bounds(tree);
     std::int32_t stack[kTraversalStack<kLanes<Real>>];
     std::int32_t* top = stack;
     *top++ = child;
     while (top != stack && !light.is_hidden) {
         child = *--top;
         if (child < 0) {
-            const Block& block = tree.blocks[~child];
-            work.count(block);
-            intersect_block<features, InBox::Yes, Real>(block, ready, light);
+            meet_leaf<features, Real>(tree, child, ready, light, work);
             continue;
         }
         const auto index = static_cast<std::size_t>(child);
@@ -44,8 +45,9 @@ RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tr
         work.count(node);
         Vec3<Real> near;
         Vec3<Real> far;
-        for (int i = 0; i < 3; ++i) bounds.template children<Real>(index, i, ray.sign[i], ray.time, near[i], far[i]);
-        const Interval<Real> inside = box_interval<Real>(near, far, ray.origin, ray.inverse, Real(light.t));
+        for (int i = 0; i < 3; ++i)
+            bounds.template children<Real>(index, i, boxes.sign[i], boxes.time, near[i], far[i]);
+        const Interval<Real> inside = ray_interval<Real>(near, far, boxes, Real(light.t));
         for (unsigned bits = mask_bits(inside.enter <= inside.exit); bits != 0; bits &= bits - 1)
             *top++ = node.child[std::countr_zero(bits)];
     }
@@ -64,10 +66,14 @@ template <Features features, class Scalar, class Work>
         if (!light.is_hidden) detail::walk<features, Real>(scene.quad_tree, spread, light, work);
     }
     if constexpr (features.triangles) {
-        if (!light.is_hidden && !scene.triangle_tree.nodes.empty())
+        const auto walk_apart = [&](const auto& tree) {
+            if (light.is_hidden || tree.nodes.empty()) return;
             light = detail::walk_apart<Real>(ray, leaving_id, light, [&](const SpreadRay<Real>& apart, auto& found) {
-                detail::walk<features, Real>(scene.triangle_tree, apart, found, work);
+                detail::walk<features, Real>(tree, apart, found, work);
             });
+        };
+        walk_apart(scene.triangle_tree);
+        walk_apart(scene.instance_tree);
     }
     if (!light.is_hidden) detail::walk<features, Real>(scene.sphere_tree, spread, light, work);
     return light.is_hidden;

@@ -1,5 +1,5 @@
 /// The shapes of a scene as traversal reads them: blocks of spheres, quads, planes and triangles, and trees over
-/// blocks.
+/// blocks, and a tree over instances of objects.
 ///
 /// Tables own their memory; a view points into them, and is all that kernels read. A view is a plain value: it may be
 /// copied to where pointers mean something else. Tables are immutable once they are made, so threads share them.
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/geometry/bvh.h"
+#include "core/geometry/instances.h"
 #include "core/math/vec.h"
 
 namespace raypool {
@@ -45,7 +46,7 @@ template <class Scalar, int lanes>
 struct alignas(64) TriangleBlock {
     static constexpr int kLanes = lanes;
     Scalar vertex[3][3][lanes];  ///< by vertex, then by axis
-    std::int32_t id[lanes];
+    std::int32_t id[lanes];      ///< of an object's triangles: their numbers in it
 };
 
 /// A tree whose leaf i is block i.
@@ -80,6 +81,17 @@ struct TreeView {
           depth(tree.depth) {}
 };
 
+/// Instances in the order of their ids, a leaf each; and the trees of all objects in one, whose roots instances name.
+template <class Scalar>
+struct InstanceTreeView : TreeView<InstanceRow<Scalar>, Scalar, kTreeWidth<Scalar>> {
+    using Tree = TreeView<InstanceRow<Scalar>, Scalar, kTreeWidth<Scalar>>;
+    using Objects = TreeView<TriangleBlock<Scalar, kTreeWidth<Scalar>>, Scalar, kTreeWidth<Scalar>>;
+    Objects objects;
+
+    InstanceTreeView() = default;
+    InstanceTreeView(const Tree& tree, const Objects& of_objects) : Tree(tree), objects(of_objects) {}
+};
+
 template <class Scalar>
 struct ShapeTables {
     static constexpr int kWidth = kTreeWidth<Scalar>;
@@ -90,6 +102,8 @@ struct ShapeTables {
     BlockTree<SphereBlock<Scalar, kWidth>, Scalar, kWidth> sphere_tree;
     BlockTree<PlanarBlock<Scalar, kWidth>, Scalar, kWidth> quad_tree;
     BlockTree<TriangleBlock<Scalar, kWidth>, Scalar, kWidth> triangle_tree;
+    BlockTree<InstanceRow<Scalar>, Scalar, kWidth> instance_tree;
+    BlockTree<TriangleBlock<Scalar, kWidth>, Scalar, kWidth> object_trees;  ///< of all objects, with their roots
 
     /// Calls visit(std::vector&) for every table.
     template <class Self, class Visit>
@@ -104,6 +118,8 @@ struct ShapeTables {
         visit_tree(self.sphere_tree);
         visit_tree(self.quad_tree);
         visit_tree(self.triangle_tree);
+        visit_tree(self.instance_tree);
+        visit_tree(self.object_trees);
     }
 };
 
@@ -117,6 +133,7 @@ struct ShapeView {
     TreeView<SphereBlock<Scalar, kWidth>, Scalar, kWidth> sphere_tree;
     TreeView<PlanarBlock<Scalar, kWidth>, Scalar, kWidth> quad_tree;
     TreeView<TriangleBlock<Scalar, kWidth>, Scalar, kWidth> triangle_tree;
+    InstanceTreeView<Scalar> instance_tree;
 
     ShapeView() = default;
     explicit ShapeView(const ShapeTables<Scalar>& tables)
@@ -124,7 +141,9 @@ struct ShapeView {
           planes(tables.planes),
           sphere_tree(tables.sphere_tree),
           quad_tree(tables.quad_tree),
-          triangle_tree(tables.triangle_tree) {}
+          triangle_tree(tables.triangle_tree),
+          instance_tree(typename InstanceTreeView<Scalar>::Tree(tables.instance_tree),
+                        typename InstanceTreeView<Scalar>::Objects(tables.object_trees)) {}
 };
 
 }  // namespace raypool

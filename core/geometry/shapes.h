@@ -62,29 +62,46 @@ RAYPOOL_INLINE Real slab_distance(const Real& plane, const Real& origin, const R
 }
 
 /// `exit` is no farther than `limit`. max(n, t) and min(f, t) keep t when n or f is NaN.
+/// The origin is one as the near sides and one as the far sides see it, where it is not known exactly.
 template <class Real>
-RAYPOOL_INLINE Interval<Real> box_interval(const Vec3<Real>& near, const Vec3<Real>& far, const Vec3<Real>& origin,
-                                           const RayInverse<Real>& inverse, const Real& limit) {
+RAYPOOL_INLINE Interval<Real> box_interval(const Vec3<Real>& near, const Vec3<Real>& far, const Vec3<Real>& near_origin,
+                                           const Vec3<Real>& far_origin, const RayInverse<Real>& inverse,
+                                           const Real& limit) {
     Interval<Real> inside{Real(0), limit};
     for (int i = 0; i < 3; ++i) {
-        inside.enter = max(slab_distance<Real>(near[i], origin[i], inverse.near_scale[i]), inside.enter);
-        inside.exit = min(slab_distance<Real>(far[i], origin[i], inverse.far_scale[i]), inside.exit);
+        inside.enter = max(slab_distance<Real>(near[i], near_origin[i], inverse.near_scale[i]), inside.enter);
+        inside.exit = min(slab_distance<Real>(far[i], far_origin[i], inverse.far_scale[i]), inside.exit);
     }
     return inside;
 }
 
+/// The same of rays whose origin is known.
+template <class Real>
+RAYPOOL_INLINE Interval<Real> box_interval(const Vec3<Real>& near, const Vec3<Real>& far, const Vec3<Real>& origin,
+                                           const RayInverse<Real>& inverse, const Real& limit) {
+    return box_interval<Real>(near, far, origin, origin, inverse, limit);
+}
+
 /// Whether the hit at distance t lies in the box [low, high] as the box test sees it.
 template <class Real>
-RAYPOOL_INLINE Mask<Real> is_inside_box(const Vec3<Real>& low, const Vec3<Real>& high, const Vec3<Real>& origin,
-                                        const RayInverse<Real>& inverse, const Real& t) {
+RAYPOOL_INLINE Mask<Real> is_inside_box(const Vec3<Real>& low, const Vec3<Real>& high, const Vec3<Real>& near_origin,
+                                        const Vec3<Real>& far_origin, const RayInverse<Real>& inverse, const Real& t) {
     Vec3<Real> near;
     Vec3<Real> far;
     for (int i = 0; i < 3; ++i) {
         near[i] = select(inverse.is_negative[i], high[i], low[i]);
         far[i] = select(inverse.is_negative[i], low[i], high[i]);
     }
-    const Interval<Real> inside = box_interval<Real>(near, far, origin, inverse, Real(kInfinity<Real>));
+    const Interval<Real> inside =
+        box_interval<Real>(near, far, near_origin, far_origin, inverse, Real(kInfinity<Real>));
     return inside.enter <= t && inside.enter <= inside.exit;
+}
+
+/// The same of a ray whose origin is known.
+template <class Real>
+RAYPOOL_INLINE Mask<Real> is_inside_box(const Vec3<Real>& low, const Vec3<Real>& high, const Vec3<Real>& origin,
+                                        const RayInverse<Real>& inverse, const Real& t) {
+    return is_inside_box<Real>(low, high, origin, origin, inverse, t);
 }
 
 /// Where the centre of a moving sphere is; center0 exactly when it does not move.

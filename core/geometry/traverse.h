@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "core/geometry/instances.h"
 #include "core/geometry/shape_tables.h"
 #include "core/geometry/shapes.h"
 #include "core/geometry/test_count.h"
@@ -44,6 +45,18 @@ struct SpreadRay {
     }
 };
 
+/// One ray in every lane, in an object's space.
+template <class Real>
+struct SpreadObjectRay : ObjectRay<Real> {
+    int sign[3];  ///< as SpreadRay's
+    Real time;
+
+    RAYPOOL_INLINE SpreadObjectRay(const InstanceRow<ScalarOf<Real>>& instance, const SpreadRay<Real>& ray)
+        : ObjectRay<Real>(ObjectRay<Real>::of(instance, ray.origin, ray.direction)), time(ray.time) {
+        for (int i = 0; i < 3; ++i) sign[i] = lane(this->inverse.near_scale[i], 0) < ScalarOf<Real>(0) ? 1 : 0;
+    }
+};
+
 /// A ray or rays as the shapes of a block take them: with the shear that triangles need.
 template <class Rays, class Real>
 struct Sheared : Rays {
@@ -53,6 +66,20 @@ template <class Block>
 concept IsTriangles = requires(Block block) {
     block.vertex;
 };
+
+/// Where rays are between the near and far sides of boxes.
+template <class Real, class Rays>
+RAYPOOL_INLINE Interval<Real> ray_interval(const Vec3<Real>& near, const Vec3<Real>& far, const Rays& rays,
+                                           const Real& limit) {
+    if constexpr (requires { rays.near_origin; }) {
+        return box_interval<Real>(near, far, rays.near_origin, rays.far_origin, rays.inverse, limit);
+    } else {
+        return box_interval<Real>(near, far, rays.origin, rays.inverse, limit);
+    }
+}
+
+template <class Scalar>
+struct Occlusion;  // occlusion.h
 
 /// Whether a primitive's box is in a tree and so limits its hits.
 enum class InBox : bool { No, Yes };
@@ -176,24 +203,44 @@ RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRay<Real>& r
     }
 }
 
-template <Features features, InBox in_box, class Real, IsTriangles Block, class Found>
-RAYPOOL_INLINE void intersect_block(const Block& block, const Sheared<SpreadRay<Real>, Real>& ray, Found& hit) {
-    std::array<Vec3<Real>, 3> vertex;
-    for (int i = 0; i < 3; ++i) vertex[i] = load<Real>(block.vertex[i]);
-    const Real t = triangle_distance<Real>(ray.origin, ray.shear, vertex, is_leaving<Real>(block.id, ray.leaving_id));
-    const Mask<Real> is_closer = t <= Real(hit.t) && t < Real(kInfinity<Real>);
-    if (none(is_closer)) return;
+/// Of a triangle met at t: whether the ray is there inside its own box, and so in those of the trees above it.
+template <class Real, class Rays>
+RAYPOOL_INLINE Mask<Real> is_inside_triangle_box(const std::array<Vec3<Real>, 3>& vertex, const Vec3<Real>& origin,
+                                                 const Rays& rays, const Real& t) {
     Vec3<Real> low;
     Vec3<Real> high;
     triangle_box<Real>(vertex, low, high);
-    const Mask<Real> is_inside = is_inside_box<Real>(low, high, ray.origin, ray.inverse, t);
-    keep_closest<Real>(t, block.id, mask_bits(is_closer && is_inside), hit);
+    return is_inside_box<Real>(low, high, origin, rays.inverse, t);
+}
+/// The same of an instance's, whose vertices are those of its object.
+template <class Real>
+RAYPOOL_INLINE Mask<Real> is_inside_object_box(const std::array<Vec3<Real>, 3>& vertex, const ObjectRay<Real>& ray,
+                                               const Real& t) {
+    Vec3<Real> low;
+    Vec3<Real> high;
+    triangle_box<Real>(vertex, low, high);
+    return is_inside_box<Real>(low, high, ray.near_origin, ray.far_origin, ray.inverse, t);
+}
+
+/// `ray` is sheared, and placed where the triangles are an object's.
+template <Features features, InBox in_box, class Real, IsTriangles Block, class SpreadRays, class Found>
+RAYPOOL_INLINE void intersect_block(const Block& block, const SpreadRays& ray, Found& hit) {
+    std::array<Vec3<Real>, 3> stored;
+    for (int i = 0; i < 3; ++i) stored[i] = load<Real>(block.vertex[i]);
+    std::array<Vec3<Real>, 3> vertex = stored;
+    if constexpr (IsPlaced<SpreadRays>) vertex = ray.placing.points(stored);
+    const Real t = triangle_distance<Real>(ray.origin, ray.shear, vertex, is_leaving<Real>(block.id, ray.leaving_id));
+    Mask<Real> is_closer = t <= Real(hit.t) && t < Real(kInfinity<Real>);
+    if (none(is_closer)) return;
+    is_closer = is_closer && is_inside_triangle_box<Real>(vertex, ray.origin, ray, t);
+    if constexpr (IsPlaced<SpreadRays>) is_closer = is_closer && is_inside_object_box<Real>(stored, ray.in_object, t);
+    keep_closest<Real>(t, block.id, mask_bits(is_closer), hit);
 }
 
 /// A ray as the shapes of a tree take it.
 template <class Block, class Real>
 RAYPOOL_INLINE decltype(auto) ready_for(const SpreadRay<Real>& ray) {
-    if constexpr (IsTriangles<Block>) {
+    if constexpr (IsTriangles<Block> || IsInstance<Block>) {
         const auto first = [](const Vec3<Real>& v) {
             return vec3<ScalarOf<Real>>(lane(v[0], 0), lane(v[1], 0), lane(v[2], 0));
         };
@@ -219,14 +266,30 @@ RAYPOOL_INLINE void test_untreed(const ShapeView<ScalarOf<Real>>& scene, const S
     if constexpr (features.planar) test_all(scene.planes);
 }
 
-/// From `child` of the tree on.
-template <Features features, class Real, class Block, class Work>
-RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tree, const SpreadRay<Real>& ray,
-                         Hit<ScalarOf<Real>>& hit, Work& work, std::int32_t child = 0) {
+/// The triangles of an instance, from `child` of its object's tree on.
+template <Features features, class Real, class Tree, class Found, class Work>
+[[gnu::noinline]] void meet_instance(const Tree& objects, const InstanceRow<ScalarOf<Real>>& instance,
+                                     std::int32_t child, const Sheared<SpreadRay<Real>, Real>& ray, Found& found,
+                                     Work& work);
+
+/// What is at leaf ~child of a tree.
+template <Features features, class Real, class Tree, class Ready, class Found, class Work>
+RAYPOOL_INLINE void meet_leaf(const Tree& tree, std::int32_t child, const Ready& ready, Found& found, Work& work) {
+    const auto& block = tree.blocks[~child];
+    if constexpr (IsInstance<typename Tree::Block>) {
+        meet_instance<features, Real>(tree.objects, block, block.number(Tree::Block::kRoot), ready, found, work);
+    } else {
+        work.count(block);
+        intersect_block<features, InBox::Yes, Real>(block, ready, found);
+    }
+}
+
+/// From `child` of the tree on: `boxes` is the ray as the boxes see it, and `ready` as what is in leaves does.
+template <Features features, class Real, class Tree, class Boxes, class Ready, class Work>
+RAYPOOL_INLINE void walk(const Tree& tree, const Boxes& boxes, const Ready& ready, Hit<ScalarOf<Real>>& hit, Work& work,
+                         std::int32_t child) {
     using S = ScalarOf<Real>;
-    if (tree.nodes.empty()) return;
-    const auto& ready = ready_for<Block, Real>(ray);
-    const TreeBounds<features, TreeView<Block, S, kLanes<Real>>> bounds(tree);
+    const TreeBounds<features, Tree> bounds(tree);
     struct Entry {
         S enter;
         std::int32_t child;
@@ -241,8 +304,8 @@ RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tr
             Vec3<Real> near;
             Vec3<Real> far;
             for (int i = 0; i < 3; ++i)
-                bounds.template children<Real>(index, i, ray.sign[i], ray.time, near[i], far[i]);
-            const Interval<Real> inside = box_interval<Real>(near, far, ray.origin, ray.inverse, Real(hit.t));
+                bounds.template children<Real>(index, i, boxes.sign[i], boxes.time, near[i], far[i]);
+            const Interval<Real> inside = ray_interval<Real>(near, far, boxes, Real(hit.t));
             alignas(64) S enter[kLanes<Real>];
             inside.enter.copy_to(enter, stdx::vector_aligned);
 
@@ -255,9 +318,7 @@ RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tr
                 *place = {enter[i], node.child[i]};
             }
         } else {
-            const Block& block = tree.blocks[~child];
-            work.count(block);
-            intersect_block<features, InBox::Yes, Real>(block, ready, hit);
+            meet_leaf<features, Real>(tree, child, ready, hit, work);
         }
         do {
             if (top == stack) return;
@@ -265,6 +326,35 @@ RAYPOOL_INLINE void walk(const TreeView<Block, ScalarOf<Real>, kLanes<Real>>& tr
         } while (top->enter > hit.t);
         child = top->child;
     }
+}
+
+/// The same until something hides a light (occlusion.h).
+template <Features features, class Real, class Tree, class Boxes, class Ready, class Work>
+RAYPOOL_INLINE void walk(const Tree& tree, const Boxes& boxes, const Ready& ready, Occlusion<ScalarOf<Real>>& light,
+                         Work& work, std::int32_t child);
+
+/// The same of a ray as it is.
+template <Features features, class Real, class Tree, class Found, class Work>
+RAYPOOL_INLINE void walk(const Tree& tree, const SpreadRay<Real>& ray, Found& found, Work& work,
+                         std::int32_t child = 0) {
+    if (tree.nodes.empty()) return;
+    const auto& ready = ready_for<typename Tree::Block, Real>(ray);
+    walk<features, Real>(tree, ray, ready, found, work, child);
+}
+
+template <Features features, class Real, class Tree, class Found, class Work>
+[[gnu::noinline]] void meet_instance(const Tree& objects, const InstanceRow<ScalarOf<Real>>& instance,
+                                     std::int32_t child, const Sheared<SpreadRay<Real>, Real>& ray, Found& found,
+                                     Work& work) {
+    using Row = InstanceRow<ScalarOf<Real>>;
+    const SpreadObjectRay<Real> in_object(instance, ray);
+    const std::int32_t first = instance.number(Row::kFirstId);
+    Placed<Sheared<SpreadRay<Real>, Real>, Real> placed{ray, Placing<Real>::of(instance.value + Row::kTransform),
+                                                        in_object};
+    placed.leaving_id -= first;
+    count_ids_from(found, first);
+    walk<features, Real>(objects, in_object, placed, found, work, child);
+    count_ids_from(found, -first);
 }
 
 /// Walks a tree by a call, with a spread ray of its own: scenes in which it is empty pay nothing for it. What
@@ -287,10 +377,14 @@ template <Features features, class Scalar, class Work>
     detail::test_untreed<features, Real>(scene, spread, hit, work);
     if constexpr (features.planar) detail::walk<features, Real>(scene.quad_tree, spread, hit, work);
     if constexpr (features.triangles) {
-        if (!scene.triangle_tree.nodes.empty())
+        const auto walk_apart = [&](const auto& tree) {
+            if (tree.nodes.empty()) return;
             hit = detail::walk_apart<Real>(ray, leaving_id, hit, [&](const SpreadRay<Real>& apart, auto& found) {
-                detail::walk<features, Real>(scene.triangle_tree, apart, found, work);
+                detail::walk<features, Real>(tree, apart, found, work);
             });
+        };
+        walk_apart(scene.triangle_tree);
+        walk_apart(scene.instance_tree);
     }
     detail::walk<features, Real>(scene.sphere_tree, spread, hit, work);
     return hit;

@@ -96,11 +96,13 @@ Eigen::Affine3d parse_transform(JsonObject object) {
     return transform;
 }
 
-}  // namespace
-
-MeshShape parse_mesh(JsonObject& object, const SceneImages& files) {
+std::shared_ptr<const Mesh> mesh_by_keys(JsonObject& object, const SceneImages& files) {
     const auto file = object.optional("file");
-    MeshShape shape{std::make_shared<const Mesh>(file ? mesh_of_file(*file, files) : inline_mesh(object))};
+    return std::make_shared<const Mesh>(file ? mesh_of_file(*file, files) : inline_mesh(object));
+}
+
+/// By the key "transform", which is optional.
+void place(JsonObject& object, MeshShape& shape) {
     if (const auto transform = object.optional("transform"))
         shape.transform = parse_transform(JsonObject(*transform)).affine();
     for (const auto& position : shape.mesh->positions) {
@@ -109,6 +111,27 @@ MeshShape parse_mesh(JsonObject& object, const SceneImages& files) {
             object.place().refuse(fmt::format("keep its vertices within {:g}", kMaxLength),
                                   fmt::format("[{:g}, {:g}, {:g}]", placed[0], placed[1], placed[2]));
     }
+}
+
+}  // namespace
+
+MeshShape parse_mesh(JsonObject& object, const SceneImages& files) {
+    MeshShape shape{mesh_by_keys(object, files)};
+    place(object, shape);
+    return shape;
+}
+
+std::shared_ptr<const Mesh> parse_object(JsonObject object, const SceneImages& files) {
+    object.required("type").one_of({"mesh"});
+    std::shared_ptr<const Mesh> mesh = mesh_by_keys(object, files);
+    object.refuse_unknown_keys();
+    return mesh;
+}
+
+MeshShape parse_instance(JsonObject& object, std::shared_ptr<const Mesh> mesh) {
+    MeshShape shape{std::move(mesh)};
+    shape.is_instance = true;
+    place(object, shape);
     return shape;
 }
 

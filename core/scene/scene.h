@@ -118,6 +118,9 @@ struct MeshShape {
     /// Takes a vertex to its place: a matrix, not singular, and in the last column what is added.
     Eigen::Matrix<double, 3, 4> transform = Eigen::Matrix<double, 3, 4>::Identity();
     std::int32_t material_id = 0;
+    /// Its triangles are in memory once, whatever the number of instances of the mesh, and placed when rays meet them,
+    /// in the precision of the render. What shines is never an instance: each of its triangles is a light.
+    bool is_instance = false;
 
     [[nodiscard]] Vector3d placed(const std::array<float, 3>& position) const {
         const Vector3d p(position[0], position[1], position[2]);
@@ -129,7 +132,8 @@ struct MeshShape {
     [[nodiscard]] bool is_mirrored() const { return transform.leftCols<3>().determinant() < 0; }
 };
 
-/// A primitive's id counts through all shapes in this order: spheres, quads, planes, the triangles of all meshes.
+/// A primitive's id counts through all shapes in this order: spheres, quads, planes, the triangles of meshes that are
+/// no instances, and those of instances.
 struct Scene {
     std::string name;          ///< file name without folder and extension, as UTF-8
     std::string description;   ///< what the scene is for and where it comes from; not empty
@@ -143,6 +147,11 @@ struct Scene {
     std::vector<Quad> quads;
     std::vector<Plane> planes;
     std::vector<MeshShape> meshes;
+
+    [[nodiscard]] bool is_instance(const MeshShape& shape) const {
+        const Material& material = materials[static_cast<std::size_t>(shape.material_id)];
+        return shape.is_instance && material.kind != Material::Kind::Emissive;
+    }
 };
 
 }  // namespace raypool

@@ -3,6 +3,8 @@
 
 #include "core/scene/scene_hash.h"
 
+#include <cstddef>
+#include <map>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -16,6 +18,8 @@ namespace {
 
 /// Of meshes with normals: before triangles were smooth, normals were hashed and changed no image.
 constexpr int kSmooth = 1;
+/// Of instances, which are rounded where they stand, and not before.
+constexpr int kInstance = 2;
 
 class Hasher {
   public:
@@ -73,11 +77,21 @@ class Hasher {
     void add(const std::array<T, count>& elements) {
         for (const T& element : elements) add(element);
     }
+    void add(const Mesh& mesh) {
+        const auto& [positions, normals, uv, triangles] = mesh;
+        add_all(positions, normals, uv, triangles);
+    }
     void add(const MeshShape& shape) {
-        const auto& [mesh, transform, material_id] = shape;
-        const auto& [positions, normals, uv, triangles] = *mesh;
-        add_all(positions, normals, uv, triangles, material_id);
-        if (!normals.empty()) add(kSmooth);
+        const auto& [mesh, transform, material_id, is_instance] = shape;
+        if (is_instance) {
+            const auto [found, is_new] = objects_.try_emplace(mesh.get(), objects_.size());
+            add_all(kInstance, found->second, material_id);
+            if (is_new) add(*mesh);
+        } else {
+            add(*mesh);
+            add(material_id);
+            if (!mesh->normals.empty()) add(kSmooth);
+        }
         for (int i = 0; i < 12; ++i) add(transform(i / 4, i % 4));
     }
     template <class T>
@@ -90,6 +104,7 @@ class Hasher {
         void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
     };
     std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
+    std::map<const Mesh*, std::size_t> objects_;  ///< those with instances, in order
 };
 
 }  // namespace

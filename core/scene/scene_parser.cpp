@@ -110,6 +110,10 @@ class SceneReader {
                 scene_.materials.push_back(material(JsonObject(place)));
             }
         }
+        if (const auto objects = object.optional("objects")) {
+            for (const auto& [name, place] : objects->members())
+                objects_[name] = parse_object(JsonObject(place), images_);
+        }
         const JsonCursor shapes = object.required("shapes");
         for (std::size_t i = 0; i < shapes.size(); ++i) read_shape(JsonObject(shapes.item(i)));
         object.refuse_unknown_keys();
@@ -186,7 +190,7 @@ class SceneReader {
     }
 
     void read_shape(JsonObject object) {
-        const std::string type = object.required("type").one_of({"sphere", "quad", "plane", "mesh"});
+        const std::string type = object.required("type").one_of({"sphere", "quad", "plane", "mesh", "instance"});
         if (type == "sphere") {
             Sphere sphere;
             sphere.center0 = position(object.required("center"));
@@ -205,7 +209,12 @@ class SceneReader {
             quad.material_id = material_id(object.required("material"));
             scene_.quads.push_back(quad);
         } else if (type == "mesh") {
-            read_mesh(object);
+            add_mesh(object, parse_mesh(object, images_));
+        } else if (type == "instance") {
+            const JsonCursor shape = object.required("shape");
+            const auto named = objects_.find(shape.text());
+            if (named == objects_.end()) shape.refuse("name one of the objects");
+            add_mesh(object, parse_instance(object, named->second));
         } else {
             Plane plane;
             plane.point = position(object.required("point"));
@@ -217,8 +226,7 @@ class SceneReader {
         object.refuse_unknown_keys();
     }
 
-    void read_mesh(JsonObject& object) {
-        MeshShape shape = parse_mesh(object, images_);
+    void add_mesh(JsonObject& object, MeshShape shape) {
         const JsonCursor material = object.required("material");
         shape.material_id = material_id(material);
         const Material& made_of = scene_.materials[static_cast<std::size_t>(shape.material_id)];
@@ -233,6 +241,7 @@ class SceneReader {
     Scene scene_;
     std::map<std::string, std::int32_t> texture_ids_;
     std::map<std::string, std::int32_t> material_ids_;
+    std::map<std::string, std::shared_ptr<const Mesh>> objects_;
 };
 
 }  // namespace

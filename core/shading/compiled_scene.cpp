@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <set>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/base/error.h"
 #include "core/geometry/shape_bounds.h"
+#include "core/shading/mesh_rows.h"
 #include "core/shading/shape_blocks.h"
 
 namespace raypool {
@@ -38,7 +42,7 @@ class Compiler {
         add_textures();
         add_surfaces();
         add_meshes();
-        add_blocks(scene_, coincidence_, out_);
+        add_blocks(scene_, coincidence_, mesh_rows_.objects(), out_);
         if (features_.lights) out_.lights = light_table<Scalar>(scene_, coincidence_.is_hidden);
         features_.lights = !out_.lights.rows.empty();
         out_.environment = environment_tables<Scalar>(scene_.background, out_.lights.environment_chance);
@@ -49,6 +53,7 @@ class Compiler {
         compiled.width = scene_.width;
         compiled.height = scene_.height;
         compiled.first_triangle = static_cast<std::int32_t>(coincidence_.is_hidden.size());
+        compiled.first_instanced = first_instanced_;
         compiled.camera = make_camera<Scalar>(scene_.camera, scene_.width, scene_.height);
         const Vector3d middle = 0.5 * (scene_.background.bottom + scene_.background.top);
         const Vector3d slope = 0.5 * (scene_.background.top - scene_.background.bottom);
@@ -74,14 +79,25 @@ class Compiler {
         static_assert(kMostBoxes <= std::size_t{1} << PlanarMark<Scalar>::kGroupBits, "a group is an id");
         std::size_t count = scene_.spheres.size() + scene_.quads.size() + scene_.planes.size();
         std::size_t vertices = 0;
+        std::size_t instanced = 0;  // triangles
+        std::set<std::pair<const Mesh*, bool>> objects;
         for (const MeshShape& shape : scene_.meshes) {
-            count += shape.mesh->triangles.size();
-            vertices += shape.mesh->positions.size();
+            const Mesh& mesh = *shape.mesh;
+            if (scene_.is_instance(shape)) {
+                instanced += mesh.triangles.size();
+                if (!objects.emplace(&mesh, shape.is_mirrored()).second) continue;
+            }
+            count += mesh.triangles.size();
+            vertices += mesh.positions.size();
         }
         if (vertices > 3 * kMostBoxes)
             throw InputError(fmt::format("meshes of {} vertices: must have at most {}", vertices, 3 * kMostBoxes));
         if (count > kMostBoxes)
             throw InputError(fmt::format("scene of {} shapes: must have at most {}", count, kMostBoxes));
+        constexpr std::size_t kMostIds = std::numeric_limits<std::int32_t>::max();
+        if (count + instanced > kMostIds)
+            throw InputError(
+                fmt::format("instances of {} triangles: a scene must have at most {} shapes", instanced, kMostIds));
         constexpr std::size_t kMostTextures = SurfaceCode<int>::kMostTextures;
         if (scene_.textures.size() > kMostTextures)
             throw InputError(
@@ -184,49 +200,20 @@ class Compiler {
     }
 
     void add_meshes() {
-        using Triangle = TriangleRow<Scalar>;
-        for (const MeshShape& shape : scene_.meshes) {
-            const Mesh& mesh = *shape.mesh;
-            const std::size_t first_vertex = out_.vertices.size();
-            const auto bits = [](std::size_t number) { return of_bits<Scalar>(static_cast<Int<Scalar>>(number)); };
-            const Scalar surface = bits(out_.surfaces.size());
-            out_.surfaces.push_back(surface_row(shape.material_id, Shape::Mesh));
-            for (const auto& position : mesh.positions) {
-                const Vector3d placed = shape.placed(position);
-                VertexRow<Scalar>& row = out_.vertices.emplace_back(VertexRow<Scalar>{});
-                for (int i = 0; i < 3; ++i) row.value[i] = static_cast<Scalar>(placed[i]);
-                row.value[VertexRow<Scalar>::kNormal] = of_bits<Scalar>(Int<Scalar>(-1));
+        const auto add_all = [&](bool are_instances, auto add) {
+            for (const MeshShape& shape : scene_.meshes) {
+                if (scene_.is_instance(shape) != are_instances) continue;
+                out_.surfaces.push_back(surface_row(shape.material_id, Shape::Mesh));
+                add(shape, out_.surfaces.size() - 1);
             }
-            add_normals(shape, first_vertex);
-            // A transform that mirrors turns triangles over; the outward side stays.
-            const bool is_mirrored = shape.is_mirrored();
-            for (const auto& triangle : mesh.triangles) {
-                Triangle& row = out_.triangles.emplace_back(Triangle{});
-                for (int i = 0; i < 3; ++i) row.value[Triangle::kVertex + i] = bits(first_vertex + triangle[i]);
-                if (is_mirrored) std::swap(row.value[1], row.value[2]);
-                row.value[Triangle::kSurface] = surface;
-            }
-            if (mesh.uv.empty()) continue;
-            out_.vertex_uv.resize(2 * first_vertex);
-            for (const auto& [u, v] : mesh.uv)
-                for (const float coordinate : {u, v}) out_.vertex_uv.push_back(static_cast<Scalar>(coordinate));
-        }
-        if (!out_.vertex_uv.empty()) out_.vertex_uv.resize(2 * out_.vertices.size());
-        if (!out_.vertex_normals.empty()) out_.vertex_normals.push_back(0);
-    }
-
-    /// Those of the mesh whose vertices begin at `first_vertex`.
-    void add_normals(const MeshShape& shape, std::size_t first_vertex) {
-        const Eigen::Matrix3d transform = shape.normal_transform();
-        for (std::size_t i = 0; i < shape.mesh->normals.size(); ++i) {
-            const auto& [x, y, z] = shape.mesh->normals[i];
-            if (x == 0 && y == 0 && z == 0) continue;
-            const Vector3d normal = (transform * Vector3d(x, y, z).normalized()).normalized();
-            const std::size_t number = out_.vertex_normals.size() / 3;
-            out_.vertices[first_vertex + i].value[VertexRow<Scalar>::kNormal] =
-                of_bits<Scalar>(static_cast<Int<Scalar>>(number));
-            for (int axis = 0; axis < 3; ++axis) out_.vertex_normals.push_back(static_cast<Scalar>(normal[axis]));
-        }
+        };
+        add_all(false, [&](const MeshShape& shape, std::size_t surface) { mesh_rows_.add(shape, surface); });
+        auto id = first_instanced_ = static_cast<std::int32_t>(coincidence_.is_hidden.size() + out_.triangles.size());
+        add_all(true, [&](const MeshShape& shape, std::size_t surface) {
+            mesh_rows_.add_instance(shape, surface, id);
+            id += static_cast<std::int32_t>(shape.mesh->triangles.size());
+        });
+        mesh_rows_.finish();
     }
 
     const Scene& scene_;
@@ -236,6 +223,8 @@ class Compiler {
     double max_albedo_ = 0;
     double max_sampled_albedo_ = 0;
     SceneTables<Scalar> out_;
+    MeshRows<Scalar> mesh_rows_{out_};
+    std::int32_t first_instanced_ = 0;
 };
 
 }  // namespace

@@ -1,9 +1,10 @@
 /// The scene as the kernels read it: immutable tables in the precision of the render.
 ///
 /// Made by compile(); shared by all threads without locks. Engines and kernels see nothing of the description in
-/// scene.h. A primitive's id counts spheres, then quads, then planes, then triangles.
+/// scene.h. A primitive's id counts spheres, then quads, then planes, then triangles, and last those of instances.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -118,8 +119,9 @@ struct SceneTables : ShapeTables<Scalar> {
     std::vector<SurfaceRow<Scalar>> surfaces;    ///< by primitive id, less triangles; and one of each mesh
     std::vector<TextureRow<Scalar>> textures;    ///< by texture id
     std::vector<PlanarRow<Scalar>> planars;      ///< of quads and planes, by id less first_planar()
-    std::vector<TriangleRow<Scalar>> triangles;  ///< by id less first_triangle
-    std::vector<VertexRow<Scalar>> vertices;
+    std::vector<TriangleRow<Scalar>> triangles;  ///< by id less first_triangle; and behind them those of objects
+    std::vector<VertexRow<Scalar>> vertices;     ///< where they stand; of objects in their own space
+    std::vector<Scalar> instance_first_ids;      ///< the bits of whole numbers, in order
     /// Unit, three scalars each, and one scalar behind the last; empty where no mesh has any.
     std::vector<Scalar> vertex_normals;
     std::vector<Scalar> vertex_uv;          ///< two of each vertex; empty where no mesh has any
@@ -136,6 +138,7 @@ struct SceneTables : ShapeTables<Scalar> {
         visit(self.planars);
         visit(self.triangles);
         visit(self.vertices);
+        visit(self.instance_first_ids);
         visit(self.vertex_normals);
         visit(self.vertex_uv);
         visit(self.images);
@@ -155,7 +158,8 @@ struct SceneView : ShapeView<Scalar> {
     Features features;
     std::int64_t width = 0;  ///< of the image, in pixels
     std::int64_t height = 0;
-    std::int32_t first_triangle = 0;  ///< its id: how many primitives are none
+    std::int32_t first_triangle = 0;   ///< its id: how many primitives are none
+    std::int32_t first_instanced = 0;  ///< the id of the first triangle of the first instance
     Camera<Scalar> camera;
     Sky<Scalar> sky;
     EnvironmentView<Scalar> environment;  ///< in place of the sky if it has texels
@@ -168,6 +172,7 @@ struct SceneView : ShapeView<Scalar> {
     std::span<const PlanarRow<Scalar>> planars;
     std::span<const TriangleRow<Scalar>> triangles;
     std::span<const VertexRow<Scalar>> vertices;
+    std::span<const Scalar> instance_first_ids;
     std::span<const Scalar> vertex_normals;
     std::span<const Scalar> vertex_uv;
     std::span<const ImageView<Scalar>> images;
@@ -186,10 +191,29 @@ struct SceneView : ShapeView<Scalar> {
     [[nodiscard]] std::int64_t pixel_count() const { return width * height; }
 };
 
+/// The instance of triangles that have one, among those of the scene's tree.
+template <class Real>
+RAYPOOL_INLINE Int<Real> instance_of(const SceneView<ScalarOf<Real>>& scene, const Int<Real>& primitive_id) {
+    const auto count = static_cast<std::int32_t>(scene.instance_first_ids.size());
+    Int<Real> found(0);
+    for (auto step = static_cast<std::int32_t>(std::bit_floor(static_cast<std::uint32_t>(count))); step > 0;
+         step /= 2) {
+        const Int<Real> next = found + Int<Real>(step);
+        const Mask<Real> is_there = as_mask<Real>(next < Int<Real>(count));
+        const Real first = detail::gather<Real>(scene.instance_first_ids.data(), select(is_there, next, Int<Real>(0)));
+        found = select(is_there && as_mask<Real>(bits_of<Real>(first) <= primitive_id), next, found);
+    }
+    return found;
+}
+
 /// The row of a primitive among the surfaces.
 template <class Scalar>
 Int<Scalar> surface_of(const SceneView<Scalar>& scene, std::int32_t primitive_id) {
     if (primitive_id < scene.first_triangle) return primitive_id;
+    if (primitive_id >= scene.first_instanced) {
+        const auto instance = static_cast<std::size_t>(instance_of<Scalar>(scene, primitive_id));
+        return scene.instance_tree.blocks[instance].number(InstanceRow<Scalar>::kSurface);
+    }
     const auto triangle = static_cast<std::size_t>(primitive_id - scene.first_triangle);
     return bits_of<Scalar>(scene.triangles[triangle].value[TriangleRow<Scalar>::kSurface]);
 }
@@ -207,6 +231,7 @@ class CompiledScene : public SceneView<Scalar> {
         this->planars = tables_->planars;
         this->triangles = tables_->triangles;
         this->vertices = tables_->vertices;
+        this->instance_first_ids = tables_->instance_first_ids;
         this->vertex_normals = tables_->vertex_normals;
         this->vertex_uv = tables_->vertex_uv;
         this->images = tables_->images;

@@ -66,6 +66,7 @@ LightTable<Scalar> light_table(const Scene& scene, const std::vector<bool>& is_h
     std::size_t count = is_hidden.size();
     bool is_counted = false;  ///< triangles have weights
     for (const MeshShape& shape : scene.meshes) {
+        if (scene.is_instance(shape)) continue;
         const std::size_t first = count;
         count += shape.mesh->triangles.size();
         is_counted |= scene.materials[static_cast<std::size_t>(shape.material_id)].kind == Material::Kind::Emissive;

@@ -6,7 +6,7 @@ import re
 from command import main
 from generator_case import GeneratorTest
 
-KINDS = ("blob", "terrain", "field", "room", "needles")
+KINDS = ("blob", "terrain", "field", "room", "needles", "instances")
 
 
 class GenerateMeshTest(GeneratorTest):
@@ -18,7 +18,7 @@ class GenerateMeshTest(GeneratorTest):
                 with self.subTest(kind=kind, count=count):
                     self.generate_well(count, kind, "-o", "made.json")
                     told = self.run_well("info", "made.json").stdout
-                    triangles = int(re.search(r"meshes: 1, of (\d+) triangles", told)[1])
+                    triangles = int(re.search(r"show (\d+) triangles|meshes: 1, of (\d+) triangles", told).expand(r"\1\2"))
                     self.assertLess(abs(triangles - count), 0.25 * count)
                     self.assertIn(f"{triangles} triangles", json.loads((self.folder / "made.json").read_text())["description"])
                     runs = [self.stats("made.json", "--width", 16, "--spp", 2, "--engine", engine, "--threads", threads)
@@ -31,7 +31,8 @@ class GenerateMeshTest(GeneratorTest):
             made = []
             for name, seed in (("a", 0), ("b", 0), ("c", 1)):
                 self.generate_well(500, kind, "-o", f"{name}.json", "--seed", seed)
-                made.append((self.folder / f"{name}.ply").read_bytes())
+                shapes = json.loads((self.folder / f"{name}.json").read_text())["shapes"]
+                made.append(((self.folder / f"{name}.ply").read_bytes(), str(shapes).replace(f"{name}.ply", "")))
             self.assertEqual(made[0], made[1])
             self.assertNotEqual(made[0], made[2])
 

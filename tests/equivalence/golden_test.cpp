@@ -38,8 +38,8 @@ Rendered golden_render(const std::string& scene_name) {
     RenderSettings settings;
     settings.end_sample = 8;
     settings.depth = 50;
-    static const std::set<std::string> kForLightSampling{"caustic",    "many_lights", "sky_image",
-                                                         "small_lamp", "smooth",      "solids"};
+    static const std::set<std::string> kForLightSampling{"caustic",    "instances", "many_lights", "sky_image",
+                                                         "small_lamp", "smooth",    "solids"};
     settings.light_sampling = kForLightSampling.contains(scene_name) ? LightSampling::Mis : LightSampling::None;
     return render(recursive::RecursiveEngine(), scene, settings);
 }
@@ -77,7 +77,7 @@ TEST_P(Golden, ImageIsTheCommittedOne) {
 
 std::vector<std::string> all_scenes() {
     std::vector<std::string> names = builtin_scene_names();
-    names.insert(names.end(), {"sky_image", "smooth", "solids", "textures"});
+    names.insert(names.end(), {"instances", "sky_image", "smooth", "solids", "textures"});
     return names;
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(all_scenes()), [](const auto& test) { return test.param; });

@@ -98,6 +98,7 @@ const std::vector<MatrixCase> kCases{
     {"textures", "textures", 33, 19, 2, 50},
     {"half_sky", "half_sky", 33, 19, 1, 50},
     {"solids", "solids", 32, 18, 2, 50},
+    {"instances", "instances", 32, 18, 2, 50},
     {"split_solids", "solids", 16, 9, 2, 50, Sampler::Sobol, true, 2},
     {"smooth", "smooth", 32, 18, 2, 50},
     {"split_smooth", "smooth", 16, 9, 2, 50, Sampler::Sobol, true, 2},

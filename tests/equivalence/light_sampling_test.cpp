@@ -96,7 +96,7 @@ TEST(LightSamplingWithoutLights, IsNone) {
 
 INSTANTIATE_TEST_SUITE_P(Equivalence, LightSampledImage,
                          testing::Values("cornell", "mirror_corridor", "textures", "caustic", "sky_image", "solids",
-                                         "smooth"),
+                                         "smooth", "instances"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

@@ -112,7 +112,7 @@ TEST_P(BruteForceAgreement, OfTheImageOfEachPrecisionWithinNoise) {
 INSTANTIATE_TEST_SUITE_P(Scenes, BruteForceAgreement,
                          testing::Values(Case{"paper", 80}, Case{"cornell", 50}, Case{"glass_stack", 60},
                                          Case{"textures", 60}, Case{"furnace", 40}, Case{"sky_image", 50},
-                                         Case{"solids", 60}, Case{"smooth", 60}),
+                                         Case{"solids", 60}, Case{"smooth", 60}, Case{"instances", 50}),
                          [](const auto& info) { return info.param.scene; });
 
 TEST(BruteForceComparison, NoticesGlassThatIsALittleTooDense) {

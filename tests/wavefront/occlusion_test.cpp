@@ -54,7 +54,7 @@ std::vector<bool> hidden_in_stream(const CompiledScene<ScalarOf<Real>>& scene,
     using Scalar = ScalarOf<Real>;
     NoTestCount work;
     RayStream<Scalar> stream(rays.size());
-    const StreamLists<Scalar> lists(rays.size(), tree_depth(scene));
+    const StreamLists<Scalar> lists(rays.size(), StreamTrees(scene));
     const ShadowHits<Scalar> hits{stream.hits()};
     std::vector<StartedRay<Scalar>> starts;
     for (const auto& ray : rays) starts.push_back(ray.start);
@@ -78,6 +78,7 @@ std::vector<bool> hidden_in_stream(const CompiledScene<ScalarOf<Real>>& scene,
     }
     detail::walk_stream<kEverything, Real>(scene.quad_tree, hits, rays.size(), lists, intersection, work);
     detail::walk_stream<kEverything, Real>(scene.triangle_tree, hits, rays.size(), lists, intersection, work);
+    detail::walk_stream<kEverything, Real>(scene.instance_tree, hits, rays.size(), lists, intersection, work);
     detail::walk_stream<kEverything, Real>(scene.sphere_tree, hits, rays.size(), lists, intersection, work);
     std::vector<bool> is_hidden(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i) is_hidden[i] = hits.is_hidden(static_cast<std::uint32_t>(i));

@@ -95,8 +95,4 @@ void set_row(RayRow<Scalar>& row, const StartedRay<Scalar>& start) {
     row.value[Row::kTime] = start.ray.time;
 }
 
-inline int tree_depth(const auto& scene) {
-    return std::max({scene.sphere_tree.depth, scene.quad_tree.depth, scene.triangle_tree.depth});
-}
-
 }  // namespace raypool::wavefront

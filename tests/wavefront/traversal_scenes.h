@@ -73,6 +73,28 @@ inline Scene meshes() {
     return scene;
 }
 
+/// Turned, stretched, mirrored, one within another, and some twice; beside a mesh that is no instance.
+inline Scene instances() {
+    test::RandomInputs random(6);
+    Scene scene = meshes();
+    scene.meshes.resize(1);
+    const std::shared_ptr<const Mesh> objects[] = {std::make_shared<const Mesh>(test::icosphere(2)),
+                                                   std::make_shared<const Mesh>(test::triangle_soup(60, random))};
+    for (int i = 0; i < 40; ++i) {
+        MeshShape shape{objects[i % 2]};
+        shape.is_instance = true;
+        Eigen::Affine3d place(
+            Eigen::Translation3d(i % 3 == 0 ? random.lattice_point<double>(5) : random.point<double>(5)));
+        if (i % 3 != 0) place = place * Eigen::AngleAxisd(random.uniform(0, 6), random.direction<double>());
+        Vector3d scale = Vector3d::Constant(std::exp2(random.below(4) - 3));
+        if (i % 4 == 1) scale = {random.uniform(0.1, 1), random.uniform(0.1, 1), random.uniform(-1, -0.1)};
+        shape.transform = (place * Eigen::Scaling(scale)).affine();
+        scene.meshes.push_back(shape);
+        if (i % 5 == 0) scene.meshes.push_back(shape);
+    }
+    return scene;
+}
+
 struct TestScene {
     const char* name;
     Scene (*make)();
@@ -83,6 +105,7 @@ inline constexpr TestScene kScenes[] = {{"empty_scene", empty_scene},
                                         {"moving_spheres", moving_spheres},
                                         {"twins", twins},
                                         {"all_shapes", all_shapes},
-                                        {"meshes", meshes}};
+                                        {"meshes", meshes},
+                                        {"instances", instances}};
 
 }  // namespace raypool::wavefront

@@ -36,6 +36,7 @@ void trace_stream(const CompiledScene<ScalarOf<Real>>& scene, const std::vector<
     }
     detail::walk_stream<kEverything, Real>(scene.quad_tree, stream.hits(), rays.size(), lists, intersection, work);
     detail::walk_stream<kEverything, Real>(scene.triangle_tree, stream.hits(), rays.size(), lists, intersection, work);
+    detail::walk_stream<kEverything, Real>(scene.instance_tree, stream.hits(), rays.size(), lists, intersection, work);
     detail::walk_stream<kEverything, Real>(scene.sphere_tree, stream.hits(), rays.size(), lists, intersection, work);
 }
 
@@ -52,7 +53,7 @@ TYPED_TEST(RaysTogether, HitInStreamsOfAnyLengthWhatEachHitsAlone) {
         for (const std::size_t length : {1, 2, 7, 8, 9, 11, 12, 13, 15, 16, 17, 1000}) {
             for (std::size_t left = 4000; left >= length && left > 3000; left -= std::min<std::size_t>(left, 50)) {
                 RayStream<TypeParam> stream(length);  // no longer than it must be
-                const StreamLists<TypeParam> lists(length, tree_depth(scene));
+                const StreamLists<TypeParam> lists(length, StreamTrees(scene));
                 const auto rays = random_rays(scene, length, random);
                 NoTestCount work;
                 const auto intersection = left % 100 == 0 ? Intersection::Pairs : Intersection::Stream;
@@ -148,7 +149,7 @@ TEST(Stream, CountsATestForEachRayAndNoneForTheEmptyLanes) {
         std::vector<StartedRay<float>> rays(length);
         for (auto& start : rays) start = {{vec3<float>(1, 2, 9), vec3<float>(0, 0, -1), 0}, kNoPrimitive};
         RayStream<float> stream(length);
-        const StreamLists<float> lists(length, tree_depth(scene));
+        const StreamLists<float> lists(length, StreamTrees(scene));
         TestCount work;
         trace_stream<Native<float>>(scene, rays, stream, lists, Intersection::Pairs, work);
         EXPECT_EQ(work.primitive_tests, static_cast<std::int64_t>(length));

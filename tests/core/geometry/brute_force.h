@@ -82,6 +82,38 @@ void ask_all(std::span<const Block> blocks, const Ray<Scalar>& ray, std::int32_t
                 tell(shape_distance<in_box, Scalar>(block, lane, ray, leaving_id), block.id[lane]);
 }
 
+/// Calls tell(distance, id) for the triangles of an instance, from `child` of its object's tree on.
+template <class Scalar>
+void ask_instance(const InstanceTreeView<Scalar>& tree, const InstanceRow<Scalar>& instance, std::int32_t child,
+                  const Ray<Scalar>& ray, std::int32_t leaving_id, auto tell) {
+    using Row = InstanceRow<Scalar>;
+    if (child >= 0) {
+        for (const std::int32_t below : tree.objects.nodes[static_cast<std::size_t>(child)].child)
+            if (below != 0) ask_instance(tree, instance, below, ray, leaving_id, tell);
+        return;
+    }
+    auto block = tree.objects.blocks[static_cast<std::size_t>(~child)];
+    const auto placing = Placing<Scalar>::of(instance.value + Row::kTransform);
+    const auto in_object = ObjectRay<Scalar>::of(instance, ray.origin, ray.direction);
+    for (int lane = 0; lane < block.kLanes; ++lane) {
+        if (block.id[lane] == kNoPrimitive) continue;
+        block.id[lane] += instance.number(Row::kFirstId);
+        std::array<Vec3<Scalar>, 3> stored;
+        for (int i = 0; i < 3; ++i) {
+            stored[static_cast<std::size_t>(i)] = lane_of<Scalar>(block.vertex[i], lane);
+            const Vec3<Scalar> placed = placing.point(stored[static_cast<std::size_t>(i)]);
+            for (int axis = 0; axis < 3; ++axis) block.vertex[i][axis][lane] = placed[axis];
+        }
+        const Scalar t = shape_distance<InBox::Yes, Scalar>(block, lane, ray, leaving_id);
+        Vec3<Scalar> low;
+        Vec3<Scalar> high;
+        triangle_box<Scalar>(stored, low, high);
+        const bool is_inside =
+            is_inside_box<Scalar>(low, high, in_object.near_origin, in_object.far_origin, in_object.inverse, t);
+        tell(is_inside ? t : kInfinity<Scalar>, block.id[lane]);
+    }
+}
+
 /// Calls tell(distance, id) for every shape; the distance is infinity where the ray does not meet it.
 template <class Scalar>
 void for_each_distance(const ShapeView<Scalar>& scene, const Ray<Scalar>& ray, std::int32_t leaving_id, auto tell) {
@@ -90,6 +122,8 @@ void for_each_distance(const ShapeView<Scalar>& scene, const Ray<Scalar>& ray, s
     ask_all<InBox::Yes>(scene.sphere_tree.blocks, ray, leaving_id, tell);
     ask_all<InBox::Yes>(scene.quad_tree.blocks, ray, leaving_id, tell);
     ask_all<InBox::Yes>(scene.triangle_tree.blocks, ray, leaving_id, tell);
+    for (const InstanceRow<Scalar>& instance : scene.instance_tree.blocks)
+        ask_instance(scene.instance_tree, instance, instance.number(InstanceRow<Scalar>::kRoot), ray, leaving_id, tell);
 }
 
 template <class Scalar>

@@ -185,12 +185,29 @@ TYPED_TEST(TrianglesOf, LetNothingThroughThatLeavesThemSmooth) {
     }
 }
 
+/// Triangles as they are, or in four instances that are turned, stretched and mirrored, of which two are the same.
+Scene soup(bool are_instances) {
+    RandomInputs random(53);
+    Scene scene = scene_of(triangle_soup(500, random));
+    if (!are_instances) return scene;
+    for (int i = 0; i < 4; ++i) {
+        MeshShape shape = scene.meshes[0];
+        shape.is_instance = true;
+        shape.transform = (Eigen::Translation3d(random.point<double>(1)) *
+                           Eigen::AngleAxisd(random.uniform(0, 6), random.direction<double>()) *
+                           Eigen::Scaling(random.uniform(0.1, 1), random.uniform(0.1, 1), random.uniform(-1, 1)))
+                              .affine();
+        scene.meshes.push_back(shape);
+    }
+    scene.meshes.push_back(scene.meshes.back());
+    scene.meshes.erase(scene.meshes.begin());
+    return scene;
+}
+
 /// The closest of all triangles, one by one; of a tie the first. Nothing is before it, and it is before what lies
 /// behind.
-TYPED_TEST(TrianglesOf, AreFoundByTreesAsOneByOne) {
-    using Scalar = TypeParam;
-    RandomInputs random(53);
-    const CompiledScene<Scalar> scene = compile<Scalar>(scene_of(triangle_soup(500, random)));
+template <class Scalar>
+void expect_what_is_found_one_by_one(const CompiledScene<Scalar>& scene) {
     const std::int64_t rays = wanted("RAYPOOL_BRUTE_FORCE_RAYS", 20'000);
     const auto ray_of = [](RandomInputs& inputs) {
         const Vec3<Scalar> origin = inputs.point<Scalar>(7);
@@ -213,6 +230,59 @@ TYPED_TEST(TrianglesOf, AreFoundByTreesAsOneByOne) {
         return hit_of(scene, ray_of(inputs), kNoPrimitive).primitive_id != kNoPrimitive;
     };
     EXPECT_GT(count_of(rays, 54, hits), rays / 4);
+}
+TYPED_TEST(TrianglesOf, AreFoundByTreesAsOneByOne) {
+    expect_what_is_found_one_by_one(compile<TypeParam>(soup(false)));
+}
+TYPED_TEST(TrianglesOf, AreFoundInInstancesAsOneByOne) {
+    expect_what_is_found_one_by_one(compile<TypeParam>(soup(true)));
+}
+
+/// A closed mesh that is turned, stretched and, every other time, mirrored, at many places: of rays from within toward
+/// its vertices and points of its edges, and of those that leave it, none gets through.
+TYPED_TEST(TrianglesOf, LetNothingThroughWhereTheyAreInstances) {
+    using Scalar = TypeParam;
+    using Row = InstanceRow<Scalar>;
+    RandomInputs places(55);
+    const auto mesh = std::make_shared<const Mesh>(icosphere(std::min(levels(), 5)));
+    for (int round = 0; round < 8; ++round) {
+        Scene described = scene_of(*mesh, Vector3d(1e6, 0, 0));
+        MeshShape shape{mesh};
+        shape.is_instance = true;
+        const Vector3d middle = (round < 4 ? 1 : 8000) * places.direction<double>();
+        shape.transform =
+            (Eigen::Translation3d(middle) * Eigen::AngleAxisd(places.uniform(0, 6), places.direction<double>()) *
+             Eigen::Scaling(places.uniform(0.2, 4), places.uniform(0.2, 4),
+                            (round % 2 == 0 ? 1 : -1) * places.uniform(0.2, 4)))
+                .affine();
+        described.meshes.push_back(shape);
+        const CompiledScene<Scalar> scene = compile<Scalar>(described);
+        const Row& instance = scene.instance_tree.blocks[0];
+        const auto placing = Placing<Scalar>::of(instance.value + Row::kTransform);
+        const auto first = static_cast<std::uint32_t>(instance.number(Row::kFirstTriangle));
+        const auto within = [&](RandomInputs& random) {
+            const Vec3<Scalar> p = random.point<Scalar>(1);
+            return placing.point(static_cast<Scalar>(0.5) * p);
+        };
+        const auto passes = [&](RandomInputs& random, std::int64_t i) {
+            const auto triangle =
+                first + static_cast<std::uint32_t>(random.below(static_cast<int>(mesh->triangles.size())));
+            const Vec3<Scalar> from = within(random);
+            const Vec3<Scalar> a = placing.point(vertex(scene, triangle, 0));
+            const Vec3<Scalar> b = placing.point(vertex(scene, triangle, 1));
+            const auto s = i % 3 == 0 ? Scalar(0) : random.unit_interval<Scalar>();
+            const Vec3<Scalar> target = a + s * (b - a);
+            const Ray<Scalar> ray{from, unit<Scalar>(target - from), 0};
+            const Hit<Scalar> hit = hit_of(scene, ray, kNoPrimitive);
+            if (hit.primitive_id < scene.first_instanced) return true;
+            const Scattered<Scalar> out = scatter<kEverything, Scalar>(
+                scene, ray, hit.t, hit.primitive_id, vec3<Scalar>(1, 1, 1), {static_cast<std::uint32_t>(i), 0}, 0, {});
+            const Hit<Scalar> next = hit_of(scene, Ray<Scalar>{out.start.origin, out.direction, 0},
+                                            static_cast<std::int32_t>(out.start.leaving_id));
+            return next.primitive_id < scene.first_instanced || next.primitive_id == hit.primitive_id;
+        };
+        EXPECT_EQ(count_of(ray_count() / 8, 56, passes), 0) << shape.transform;
+    }
 }
 
 /// By the determinant of Moeller and Trumbore, in long double.
