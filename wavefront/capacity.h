@@ -2,6 +2,7 @@
 ///
 /// Where the trees fit into the second-level cache, a pool must fit in beside them. Where they do not, rays share the
 /// misses on nodes, and more rays share better: so the capacity grows with the trees (docs/pool.md has the figures).
+/// Instances count as if each had a tree of its own: among many rays part, and only large pools have long lists there.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,7 @@
 
 namespace raypool::wavefront {
 
-/// Of nodes, their motion and leaves.
+/// Of nodes, their motion and leaves; and of the objects' as many times as they are shown.
 template <class Scalar>
 std::size_t tree_bytes(const SceneView<Scalar>& scene) {
     const auto bytes = [](const auto& tree) {
@@ -23,8 +24,12 @@ std::size_t tree_bytes(const SceneView<Scalar>& scene) {
         for (const auto& along_axis : tree.motion) all += along_axis.size() * sizeof(along_axis[0]);
         return all;
     };
+    const auto shown = static_cast<std::size_t>(scene.end_instanced - scene.first_instanced);
+    const std::size_t stored =
+        scene.triangles.size() - static_cast<std::size_t>(scene.first_instanced - scene.first_triangle);
+    const std::size_t of_objects = stored == 0 ? 0 : bytes(scene.instance_tree.objects) / stored * shown;
     return bytes(scene.sphere_tree) + bytes(scene.quad_tree) + bytes(scene.triangle_tree) + bytes(scene.instance_tree) +
-           bytes(scene.instance_tree.objects);
+           of_objects;
 }
 
 /// Records of the pool of a thread: a power of two in [kThreadCapacity, 16 kThreadCapacity], for trees of so many bytes

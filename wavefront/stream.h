@@ -18,9 +18,6 @@ namespace raypool::wavefront {
 
 namespace detail {
 
-/// Lists shorter than this are walked ray by ray. From a prototype on triangles, in which the length hardly mattered.
-inline constexpr std::size_t kShortList = 12;
-
 /// `Rays` is StandingRays, or PlacedStreamRays.
 template <Features features, class Real, class Tree, class Rays, class Work>
 class StreamWalk {
@@ -38,7 +35,7 @@ class StreamWalk {
 
     /// Takes list[0 .. count), which has room for a register beyond its end; `free` is scratch behind it.
     void visit(std::int32_t child, std::uint32_t* list, std::size_t count, std::uint32_t* free) {
-        const bool is_single = count < kShortList;
+        const bool is_single = count < Rays::kShortList;
         if constexpr (kCountsLists) work_.count_list(count, kRays, is_single);
         if (is_single) {
             for (std::size_t i = 0; i < count; ++i) walk_single(child, list[i]);
@@ -159,7 +156,7 @@ class StreamWalk {
         using Objects = typename Tree::Objects;
         using Placed = PlacedStreamRays<decltype(rays_.hits), S>;
         StreamWalk<features, Real, Objects, Placed, Work>(tree_.objects, {rays_.hits, rows, instance}, lists_,
-                                                        intersection_, work_)
+                                                          intersection_, work_)
             .visit(instance.number(InstanceRow<S>::kRoot), free, count, free + count + kRays);
     }
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "bench/naive/triangles.h"
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
 #include "core/geometry/traverse.h"
@@ -40,20 +41,11 @@ Hit<Scalar> hit_of(const CompiledScene<Scalar>& scene, const Vec3<Scalar>& origi
 constexpr auto kOurTest = []<class Scalar>(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray) {
     return hit_of(scene, ray.origin, ray.direction, kNoPrimitive).primitive_id != kNoPrimitive;
 };
-/// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
 constexpr auto kMoellerTrumbore = []<class Scalar>(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray) {
     for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
-        const auto [a, b, c] = vertices_of(scene, i);
-        const Vec3<Scalar> edge1 = b - a;
-        const Vec3<Scalar> edge2 = c - a;
-        const Vec3<Scalar> p = ray.direction.cross(edge2);
-        const Scalar inverse = 1 / edge1.dot(p);
-        const Vec3<Scalar> s = ray.origin - a;
-        const Scalar u = inverse * s.dot(p);
-        if (!(u >= 0 && u <= 1)) continue;
-        const Vec3<Scalar> q = s.cross(edge1);
-        const Scalar v = inverse * ray.direction.dot(q);
-        if (v >= 0 && u + v <= 1 && inverse * edge2.dot(q) > 0) return true;
+        if (naive::moeller_trumbore_distance<Scalar>(ray.origin, ray.direction, vertices_of(scene, i)) <
+            kInfinity<Scalar>)
+            return true;
     }
     return false;
 };

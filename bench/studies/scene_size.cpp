@@ -246,7 +246,8 @@ std::vector<Case> scene_size_cases(const StudyOptions& options) {
                 settings.threads = 1;
 #ifdef RAYPOOL_HAS_EMBREE
                 // Their trees are built for each render, which takes longer than it.
-                if (is_mesh(kind) && kind != kInstances && depth == depths(options).back()) add_peers(cases, scene, settings, plan.repeats);
+                if (is_mesh(kind) && kind != kInstances && depth == depths(options).back())
+                    add_peers(cases, scene, settings, plan.repeats);
 #endif
                 for (const SizedWay& way : ways) {
                     const SizedRender render{way, scene, settings};

@@ -54,6 +54,7 @@ class Compiler {
         compiled.height = scene_.height;
         compiled.first_triangle = static_cast<std::int32_t>(coincidence_.is_hidden.size());
         compiled.first_instanced = first_instanced_;
+        compiled.end_instanced = end_instanced_;
         compiled.camera = make_camera<Scalar>(scene_.camera, scene_.width, scene_.height);
         const Vector3d middle = 0.5 * (scene_.background.bottom + scene_.background.top);
         const Vector3d slope = 0.5 * (scene_.background.top - scene_.background.bottom);
@@ -208,10 +209,11 @@ class Compiler {
             }
         };
         add_all(false, [&](const MeshShape& shape, std::size_t surface) { mesh_rows_.add(shape, surface); });
-        auto id = first_instanced_ = static_cast<std::int32_t>(coincidence_.is_hidden.size() + out_.triangles.size());
+        first_instanced_ = end_instanced_ =
+            static_cast<std::int32_t>(coincidence_.is_hidden.size() + out_.triangles.size());
         add_all(true, [&](const MeshShape& shape, std::size_t surface) {
-            mesh_rows_.add_instance(shape, surface, id);
-            id += static_cast<std::int32_t>(shape.mesh->triangles.size());
+            mesh_rows_.add_instance(shape, surface, end_instanced_);
+            end_instanced_ += static_cast<std::int32_t>(shape.mesh->triangles.size());
         });
         mesh_rows_.finish();
     }
@@ -225,6 +227,7 @@ class Compiler {
     SceneTables<Scalar> out_;
     MeshRows<Scalar> mesh_rows_{out_};
     std::int32_t first_instanced_ = 0;
+    std::int32_t end_instanced_ = 0;
 };
 
 }  // namespace

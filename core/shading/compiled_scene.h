@@ -160,6 +160,7 @@ struct SceneView : ShapeView<Scalar> {
     std::int64_t height = 0;
     std::int32_t first_triangle = 0;   ///< its id: how many primitives are none
     std::int32_t first_instanced = 0;  ///< the id of the first triangle of the first instance
+    std::int32_t end_instanced = 0;    ///< the id behind that of the last of the last
     Camera<Scalar> camera;
     Sky<Scalar> sky;
     EnvironmentView<Scalar> environment;  ///< in place of the sky if it has texels

@@ -138,7 +138,7 @@ TEST(Instances, AreInMemoryOnce) {
         }
         return compile<float>(scene).bytes();
     };
-    EXPECT_LT(bytes(1001) - bytes(1), 1000U * 256);
+    EXPECT_LT(bytes(1001) - bytes(1), 1000U * 300);
 }
 
 }  // namespace
