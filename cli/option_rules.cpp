@@ -69,8 +69,10 @@ constexpr OptionRule kRules[] = {
     {"study", "--scene", Rule::Excludes, "name", "stability", "its cases are scenes of their own"},
     {"study", "--scene", Rule::Excludes, "name", "scene-size", "its scenes are generated"},
     {"study", "--scene", Rule::Excludes, "name", "traversal", "its scenes are generated"},
+    {"study", "--scene", Rule::Excludes, "name", "build", "its scenes are generated"},
     {"study", "--depth", Rule::Excludes, "name", "adaptive", "it renders at depth 50"},
     {"study", "--depth", Rule::Excludes, "name", "traversal", "its rays are those of four bounces"},
+    {"study", "--depth", Rule::Excludes, "name", "build", "its rays are those of four bounces"},
     {"study", "--threads", Rule::Excludes, "name", "ranks", "its ranks have one thread each"},
     {"study", "--threads", Rule::Excludes, "name", "traversal", "it traces in one"},
 };

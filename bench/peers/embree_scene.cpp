@@ -6,6 +6,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "core/base/clock.h"
 #include "core/geometry/node_motion.h"
 
 namespace raypool::peers {
@@ -79,11 +80,18 @@ void set_bounds(const RTCBoundsFunctionArguments* args) {
     *args->bounds_o = {low[0], low[1], low[2], 0, high[0], high[1], high[2], 0};
 }
 
+/// Called by any thread of Embree's: with bytes that are taken, or given back (< 0). False would refuse them.
+bool count_bytes(void* sum, ssize_t bytes, bool /*post*/) {
+    *static_cast<std::atomic<std::ptrdiff_t>*>(sum) += bytes;
+    return true;
+}
+
 }  // namespace
 
-EmbreeScene::EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions& functions, EmbreeTriangles triangles)
-    : first_triangle_(scene.first_triangle), device_(rtcNewDevice("threads=1,set_affinity=0")) {
-    if (!device_) throw std::runtime_error("Embree found no device");
+EmbreeScene::EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions& functions, EmbreeTriangles triangles,
+                         const EmbreeBuild& build)
+    : first_triangle_(scene.first_triangle), device_(embree_device(build.threads)) {
+    rtcSetDeviceMemoryMonitorFunction(device_.get(), count_bytes, &bytes_);
     scene_.reset(rtcNewScene(device_.get()));
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
     add(scene.sphere_tree.blocks, spheres_);
@@ -99,15 +107,18 @@ EmbreeScene::EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions
     attach(spheres_, scene.features.motion, functions.sphere);
     attach(quads_, false, functions.quad);
     attach(triangles_, false, functions.triangle);
-    if (triangles == EmbreeTriangles::Embrees) attach_triangles(scene, functions.pass_light);
+    if (triangles == EmbreeTriangles::Embrees) attach_triangles(scene, build.flags, functions.pass_light);
+    const double start = wall_seconds();
     rtcCommitScene(scene_.get());
+    build_seconds_ = wall_seconds() - start;
     if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree refused the scene");
 }
 
 /// All in one geometry, so that primID counts as ids do. Those in no tree, which have no area, become points.
-void EmbreeScene::attach_triangles(const CompiledScene<float>& scene, RTCFilterFunctionN pass_light) {
+void EmbreeScene::attach_triangles(const CompiledScene<float>& scene, RTCSceneFlags flags,
+                                   RTCFilterFunctionN pass_light) {
     if (scene.triangles.empty()) return;
-    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(scene_.get(), flags);
     vertex_ids_.resize(scene.triangles.size());
     for (const auto& block : scene.triangle_tree.blocks) {
         wavefront::for_each_shape(block, [&](int lane) {

@@ -6,11 +6,12 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
-#include <type_traits>
 #include <vector>
 
 #include "bench/peers/embree_calls.h"
+#include "bench/peers/embree_device.h"
 #include "core/geometry/occlusion.h"
 #include "core/shading/compiled_scene.h"
 #include "wavefront/wide_rays.h"
@@ -20,8 +21,8 @@ namespace raypool::peers {
 /// Whose test finds the hits on triangles.
 enum class EmbreeTriangles : bool {
     Ours,     ///< user geometries, as all other shapes: every hit is ours, to the bit
-    Embrees,  ///< RTC_GEOMETRY_TYPE_TRIANGLE in a robust scene: closed along edges, and distances are rounded in
-              ///< another way
+    Embrees,  ///< RTC_GEOMETRY_TYPE_TRIANGLE, by default in a robust scene: closed along edges, and distances are
+              ///< rounded in another way
 };
 
 /// What a call of Embree hands on to the kernels: Embree knows the context alone, which comes first.
@@ -118,13 +119,27 @@ struct ShapeFunctions {
     }
 };
 
+/// How Embree builds its trees. Where a scene of its own triangles is robust, its high quality is its medium one: it
+/// splits no triangles between leaves.
+struct EmbreeBuild {
+    RTCSceneFlags flags = RTC_SCENE_FLAG_ROBUST;  ///< of a scene of its own triangles
+    int threads = 1;                              ///< embree_device() says which there are in the end
+};
+
 /// Embree reads the vertices of the compiled scene, which outlives this, where triangles are its own.
 class EmbreeScene {
   public:
-    EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions& functions, EmbreeTriangles triangles);
+    /// Throws std::runtime_error where Embree fails.
+    EmbreeScene(const CompiledScene<float>& scene, const ShapeFunctions& functions, EmbreeTriangles triangles,
+                const EmbreeBuild& build = {});
     EmbreeScene(const EmbreeScene&) = delete;  // Embree points into it
     EmbreeScene& operator=(const EmbreeScene&) = delete;
     ~EmbreeScene() = default;
+
+    /// Seconds that rtcCommitScene took.
+    [[nodiscard]] double build_seconds() const { return build_seconds_; }
+    /// What Embree says that it keeps. The vertices, and which a triangle has, are ours.
+    [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(bytes_); }
 
     /// The closest hits, `hit` or closer, of the rays whose `valid` is not 0.
     template <class Real>
@@ -162,23 +177,20 @@ class EmbreeScene {
         set(is_valid, valid);
         EmbreeCalls<kLanes<Real>>::trace(is_valid, scene_.get(), &query.context, &to);
     }
-    void attach_triangles(const CompiledScene<float>& scene, RTCFilterFunctionN pass_light);
+    void attach_triangles(const CompiledScene<float>& scene, RTCSceneFlags flags, RTCFilterFunctionN pass_light);
     template <class Block>
     void attach(Shapes<Block>& shapes, bool can_move, const ShapeFunctions::OfKind& functions);
     void finish(RTCGeometry geometry);
-
-    template <auto release>
-    struct Release {
-        void operator()(auto handle) const { release(handle); }
-    };
 
     Shapes<SphereBlock<float, 1>> spheres_;
     Shapes<PlanarBlock<float, 1>> quads_;
     Shapes<TriangleBlock<float, 1>> triangles_;
     std::vector<std::array<std::uint32_t, 3>> vertex_ids_;  ///< of Embree's own triangles
     std::int32_t first_triangle_;
-    std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release<rtcReleaseDevice>> device_;
-    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>> scene_;
+    double build_seconds_ = 0;
+    std::atomic<std::ptrdiff_t> bytes_ = 0;  // the device counts in it to its end
+    Owned<RTCDevice, rtcReleaseDevice> device_;
+    Owned<RTCScene, rtcReleaseScene> scene_;
 };
 
 /// What the tracer of recursive/ has for a count of tests here.

@@ -9,6 +9,7 @@
 namespace raypool::studies {
 
 Study adaptive_study();
+Study build_study();
 Study depth_study();
 Study features_study();
 Study framebuffer_study();

@@ -1,60 +1,14 @@
 // How fast hits are found, apart from all else: single rays, packets and streams of ours, and Embree, on the same rays.
 
-#include <cmath>
-#include <stdexcept>
-
 #include <fmt/format.h>
 
-#include "bench/studies/generated_scene.h"
-#include "bench/studies/recorded_rays.h"
 #include "bench/studies/registry.h"
-#include "bench/studies/renders.h"
-#include "bench/studies/traversal_searches.h"
-#include "core/base/clock.h"
+#include "bench/studies/traced_scene.h"
 #include "wavefront/capacity.h"
 
 namespace raypool::studies {
 
 namespace {
-
-/// A scene with the rays of its render, and what each meets by single rays of ours.
-struct TracedScene {
-    struct Rays {
-        RecordedRays rays;
-        RayAnswers answers;
-    };
-    std::shared_ptr<const StudyScene> scene;
-    std::vector<Rays> kinds;
-
-    TracedScene(const std::string& kind, std::int64_t triangles, std::int64_t width, const RenderSettings& settings)
-        : scene(generated_scene(kind, triangles, width)) {
-        const RaySearch single = named_searches({}).front().make(scene->compiled);
-        for (RecordedRays& rays : record_rays(scene->compiled, settings)) {
-            if (rays.count == 0) throw std::runtime_error(fmt::format("{} has no {} rays", scene->name, rays.kind));
-            RayAnswers answers(rays.count);
-            single(rays, answers);
-            kinds.push_back({std::move(rays), std::move(answers)});
-        }
-    }
-};
-
-/// Answers that are not the expected ones.
-struct OtherAnswers {
-    std::int64_t all = 0;
-    std::int64_t far_apart = 0;  ///< of these, of closest hits: at distances that do not agree to 1/10,000
-};
-
-OtherAnswers other_answers(const RayAnswers& found, const RayAnswers& expected, bool are_shadow) {
-    constexpr float kTie = 1e-4F;
-    OtherAnswers others;
-    for (std::size_t i = 0; i < expected.primitive_id.size(); ++i) {
-        if (found.primitive_id[i] == expected.primitive_id[i]) continue;
-        ++others.all;
-        if (!are_shadow && !(std::abs(found.distance[i] - expected.distance[i]) <= kTie * expected.distance[i]))
-            ++others.far_apart;
-    }
-    return others;
-}
 
 /// One search, made when it first runs: Embree's trees take longer than the rays.
 struct TracedSearch {
@@ -65,29 +19,19 @@ struct TracedSearch {
     std::shared_ptr<Lazy<RaySearch>> made;
 
     [[nodiscard]] std::vector<Cells> rows(std::size_t ray_kind) const {
-        const auto& [rays, expected] = (*scene)().kinds[ray_kind];
-        const RaySearch& trace = (*made)();
-        RayAnswers found(rays.count);
-        const double start = wall_seconds();
-        trace(rays, found);
-        const double seconds = wall_seconds() - start;
-
-        const OtherAnswers others = other_answers(found, expected, rays.are_shadow);
-        const bool is_same = others.all == 0 && (rays.are_shadow || found.distance == expected.distance);
-        constexpr std::int64_t kRaysForOneOther = 1000;
-        if (search.is_ours ? !is_same : others.all * kRaysForOneOther > static_cast<std::int64_t>(rays.count))
-            throw std::runtime_error(fmt::format("{} triangles, {}: of {} {} rays {} got another answer from {}",
-                                                 triangles, kind, rays.count, rays.kind, others.all, search.name));
+        const TracedRays& traced = (*scene)().kinds[ray_kind];
+        const TimedSearch timed = time_search((*made)(), traced, search.is_ours,
+                                              fmt::format("{}, {} triangles: {}", kind, triangles, search.name));
         return {{{"kind", kind},
                  {"triangles", triangles},
                  {"tree_bytes", wavefront::tree_bytes((*scene)().scene->compiled)},
-                 {"rays", rays.kind},
+                 {"rays", traced.rays.kind},
                  {"search", search.name},
-                 {"ray_count", rays.count},
-                 {"seconds", seconds},
-                 {"mrays_per_s", 1e-6 * static_cast<double>(rays.count) / seconds},
-                 {"others", others.all},
-                 {"far_apart", rays.are_shadow ? Value() : Value(others.far_apart)}}};
+                 {"ray_count", traced.rays.count},
+                 {"seconds", timed.seconds},
+                 {"mrays_per_s", timed.mrays_per_s(traced)},
+                 {"others", timed.others},
+                 {"far_apart", traced.rays.are_shadow ? Value() : Value(timed.far_apart)}}};
     }
 };
 

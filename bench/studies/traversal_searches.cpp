@@ -10,10 +10,6 @@
 #include "wavefront/packet.h"
 #include "wavefront/shadow_stage.h"
 
-#ifdef RAYPOOL_HAS_EMBREE
-#include "bench/peers/embree_scene.h"
-#endif
-
 namespace raypool::studies {
 
 namespace {
@@ -48,7 +44,7 @@ void put_hits(RayAnswers& answers, std::size_t i, const Hit<Lanes>& hit, std::si
 
 /// By whatever finds hits for a `Work`, as the tracer of recursion does.
 template <class Work>
-void trace_single_rays(const CompiledScene<float>& scene, const RecordedRays& rays, RayAnswers& answers, Work work) {
+void trace_single_rays(const SceneView<float>& scene, const RecordedRays& rays, RayAnswers& answers, Work work) {
     const FlushDenormals flush;
     for (std::size_t i = 0; i < rays.count; ++i) {
         const auto record = rays.records.load<float>(i);
@@ -62,12 +58,6 @@ void trace_single_rays(const CompiledScene<float>& scene, const RecordedRays& ra
             answers.primitive_id[i] = static_cast<std::int32_t>(hit.primitive_id);
         }
     }
-}
-
-RaySearch single_rays(const CompiledScene<float>& scene) {
-    return [&scene](const RecordedRays& rays, RayAnswers& answers) {
-        trace_single_rays(scene, rays, answers, NoTestCount{});
-    };
 }
 
 RaySearch packets(const CompiledScene<float>& scene) {
@@ -147,15 +137,10 @@ RaySearch streams(const CompiledScene<float>& scene, std::size_t capacity) {
 
 #ifdef RAYPOOL_HAS_EMBREE
 template <class Real>
-std::shared_ptr<const peers::EmbreeScene> own_triangles(const CompiledScene<float>& scene) {
+std::shared_ptr<const peers::EmbreeScene> own_triangles(const CompiledScene<float>& scene,
+                                                        const peers::EmbreeBuild& build = {}) {
     return std::make_shared<const peers::EmbreeScene>(scene, peers::ShapeFunctions::make<kEverything, Real>(),
-                                                      peers::EmbreeTriangles::Embrees);
-}
-
-RaySearch embree_single_rays(const CompiledScene<float>& scene) {
-    return [&scene, embree = own_triangles<float>(scene)](const RecordedRays& rays, RayAnswers& answers) {
-        trace_single_rays(scene, rays, answers, peers::EmbreeSearch{{}, embree.get()});
-    };
+                                                      peers::EmbreeTriangles::Embrees, build);
 }
 
 RaySearch embree_packets(const CompiledScene<float>& scene) {
@@ -183,13 +168,34 @@ RaySearch embree_packets(const CompiledScene<float>& scene) {
 
 }  // namespace
 
+RaySearch single_rays(const SceneView<float>& scene) {
+    return [&scene](const RecordedRays& rays, RayAnswers& answers) {
+        trace_single_rays(scene, rays, answers, NoTestCount{});
+    };
+}
+
+#ifdef RAYPOOL_HAS_EMBREE
+std::shared_ptr<const peers::EmbreeScene> embree_scene(const CompiledScene<float>& scene,
+                                                       const peers::EmbreeBuild& build) {
+    return own_triangles<float>(scene, build);
+}
+
+RaySearch embree_single_rays(const CompiledScene<float>& scene, std::shared_ptr<const peers::EmbreeScene> embree) {
+    return [&scene, embree = std::move(embree)](const RecordedRays& rays, RayAnswers& answers) {
+        trace_single_rays(scene, rays, answers, peers::EmbreeSearch{{}, embree.get()});
+    };
+}
+#endif
+
 std::vector<NamedSearch> named_searches(const std::vector<std::size_t>& stream_capacities) {
     std::vector<NamedSearch> searches{{kSingleRays, true, true, single_rays}, {"packets", true, false, packets}};
     for (const std::size_t capacity : stream_capacities)
         searches.push_back({fmt::format("streams of {}", capacity), true, true,
                             [capacity](const CompiledScene<float>& scene) { return streams(scene, capacity); }});
 #ifdef RAYPOOL_HAS_EMBREE
-    searches.push_back({"Embree, single rays", false, true, embree_single_rays});
+    searches.push_back({"Embree, single rays", false, true, [](const CompiledScene<float>& scene) {
+                            return embree_single_rays(scene, own_triangles<float>(scene));
+                        }});
     searches.push_back({"Embree, packets", false, true, embree_packets});
 #endif
     return searches;

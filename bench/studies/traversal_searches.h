@@ -8,6 +8,10 @@
 
 #include "bench/studies/recorded_rays.h"
 
+#ifdef RAYPOOL_HAS_EMBREE
+#include "bench/peers/embree_scene.h"
+#endif
+
 namespace raypool::studies {
 
 /// What rays met.
@@ -30,7 +34,17 @@ struct NamedSearch {
 
 inline constexpr const char* kSingleRays = "single rays";
 
+/// Those of kSingleRays. The view outlives what is made, and may have other trees than its scene.
+RaySearch single_rays(const SceneView<float>& scene);
+
 /// The first is kSingleRays. Streams are as long as the capacities say; of registers there is one kind, the widest.
 std::vector<NamedSearch> named_searches(const std::vector<std::size_t>& stream_capacities);
+
+#ifdef RAYPOOL_HAS_EMBREE
+/// The scene with triangles of Embree's own, for its single rays.
+std::shared_ptr<const peers::EmbreeScene> embree_scene(const CompiledScene<float>& scene,
+                                                       const peers::EmbreeBuild& build);
+RaySearch embree_single_rays(const CompiledScene<float>& scene, std::shared_ptr<const peers::EmbreeScene> embree);
+#endif
 
 }  // namespace raypool::studies

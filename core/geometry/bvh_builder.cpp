@@ -24,7 +24,12 @@ namespace bvh_build {
 
 namespace {
 
-constexpr std::uint32_t kSubtreeBoxes = 8192;  ///< at most so many: one thread's work, within its second-level cache
+/// Boxes that are worth a thread: below it takes longer to wake it.
+constexpr std::uint32_t kThreadBoxes = 32768;
+/// Subtrees that a larger tree is cut into, about, whatever the number of threads: one thread's work each. A range that
+/// all threads split costs them several meetings, so few are.
+constexpr std::uint32_t kSubtrees = 64;
+constexpr std::uint32_t kSubtreeBoxes = 8192;  ///< of a subtree, at least
 constexpr std::uint32_t kChunk = 2048;         ///< boxes of a larger range that a thread takes at a time
 
 /// Boxes [first, first + count) of one of the two buffers.
@@ -40,7 +45,8 @@ class Builder {
   public:
     Builder(const std::vector<Box>& boxes, std::uint32_t block)
         : block_(block),
-          threads_(std::min(omp_get_max_threads(), static_cast<int>(boxes.size() / kSubtreeBoxes) + 1)),
+          threads_(std::min(omp_get_max_threads(), static_cast<int>(boxes.size() / kThreadBoxes) + 1)),
+          subtree_boxes_(std::max(kSubtreeBoxes, static_cast<std::uint32_t>(boxes.size() / kSubtrees))),
           buffers_{std::make_unique_for_overwrite<Bounds[]>(boxes.size()),
                    std::make_unique_for_overwrite<Bounds[]>(boxes.size())} {
         tree_.order.resize(boxes.size());
@@ -60,7 +66,7 @@ class Builder {
         std::vector<Part> parts{{measured({0, static_cast<std::uint32_t>(tree_.order.size()), 0, 0, {}, {}}), 0, {}}};
         tree_.nodes.emplace_back();
         for (std::size_t i = 0; i < parts.size();) {
-            if (parts[i].range.count <= std::max(kSubtreeBoxes, block_)) {
+            if (parts[i].range.count <= std::max(subtree_boxes_, block_)) {
                 ++i;
                 continue;
             }
@@ -235,6 +241,7 @@ class Builder {
 
     std::uint32_t block_;
     int threads_;
+    std::uint32_t subtree_boxes_;  ///< of a subtree, at most
     std::unique_ptr<Bounds[]> buffers_[2];
     BinaryBvh tree_;
 };

@@ -97,8 +97,9 @@ const ObjectRows& MeshRows<Scalar>::object(const MeshShape& shape, std::size_t s
     if (is_new) {
         Box box;
         for (const auto& [x, y, z] : shape.mesh->positions) box.extend({{x, y, z}, {x, y, z}});
-        objects_.push_back({static_cast<std::uint32_t>(tables_.triangles.size()),
-                            static_cast<std::uint32_t>(shape.mesh->triangles.size()), box});
+        objects_.push_back({{static_cast<std::uint32_t>(tables_.triangles.size()),
+                             static_cast<std::uint32_t>(shape.mesh->triangles.size())},
+                            box});
         add(MeshShape{shape.mesh}, shape.is_mirrored(), surface);
     }
     return objects_[found->second];

@@ -12,10 +12,13 @@
 
 namespace raypool {
 
+/// Among those of SceneTables::triangles.
+struct TriangleRows {
+    std::uint32_t first, count;
+};
 /// A mesh that has instances.
-struct ObjectRows {
-    std::uint32_t first, count;  ///< its rows among SceneTables::triangles
-    Box box;                     ///< of its vertices, in its own space
+struct ObjectRows : TriangleRows {
+    Box box;  ///< of its vertices, in its own space
 };
 
 /// Meshes that stand alone come first, then instances, whose rows are their objects'.

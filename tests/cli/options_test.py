@@ -58,7 +58,8 @@ class OptionThatDoesNothing(CommandTest):
             self.assert_idle("study", option, *([] if value is None else [value]), named=[option, "name"])
         for study, option, value in (("stability", "--scene", "cornell"), ("scene-size", "--scene", "cornell"),
                                      ("traversal", "--scene", "cornell"), ("traversal", "--depth", 3),
-                                     ("traversal", "--threads", 2), ("adaptive", "--depth", 3), ("ranks", "--threads", 2)):
+                                     ("traversal", "--threads", 2), ("build", "--scene", "cornell"), ("build", "--depth", 3),
+                                     ("adaptive", "--depth", 3), ("ranks", "--threads", 2)):
             self.assert_idle("study", study, option, value, named=[option, study])
 
     def test_is_taken_where_it_does_something(self):

@@ -38,7 +38,7 @@ std::vector<Box> boxes_of_all_kinds() {
     const auto add = [&](const Eigen::Vector3d& center, double half_edge) {
         boxes.push_back({center.array() - half_edge, center.array() + half_edge});
     };
-    for (int i = 0; i < 30'000; ++i) {
+    for (int i = 0; i < 80'000; ++i) {
         const Eigen::Vector3d center = random.point<double>(10);
         add(center, std::exp(random.uniform(-8, 0)));
         add(Eigen::Vector3d(500, 0, 0) + 1e-3 * center, 1e-5);
