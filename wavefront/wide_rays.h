@@ -1,6 +1,6 @@
 /// A register of rays against one box or one shape: what packets and streams are made of.
 ///
-/// The mirror image of core/geometry/traverse.h, which has one ray against a register of boxes and shapes; the same
+/// The mirror image of core/geometry/block_tests.h, which has one ray against a register of boxes and shapes; the same
 /// kernels of core/geometry/shapes.h, so the same bits.
 #pragma once
 

@@ -124,7 +124,7 @@ void add_triangle_trees(std::int32_t first_triangle, std::span<const ObjectRows>
     std::map<std::int32_t, std::pair<std::int32_t, Box>> object_of;  // by the first row: the root, and the box
     for (const ObjectRows& rows : objects)
         object_of[static_cast<std::int32_t>(rows.first)] = {
-            append(triangle_tree(tables, rows, 0, build_binary_bvh), tables.object_trees), rows.box};
+            append<Scalar>(triangle_tree(tables, rows, 0, build_binary_bvh), tables.object_trees), rows.box};
     add_instances(object_of, tables);
 }
 
