@@ -33,10 +33,16 @@ GeneratedScene::GeneratedScene(const std::string& kind, std::int64_t shapes) {
         throw std::runtime_error(fmt::format("{} could not make {}", script, generated_name(kind, shapes)));
 }
 
-std::shared_ptr<const StudyScene> generated_scene(const std::string& kind, std::int64_t shapes, std::int64_t width) {
+Scene generated_description(const std::string& kind, std::int64_t shapes) {
     Scene scene = read_scene(GeneratedScene(kind, shapes).path());
+    scene.name = generated_name(kind, shapes);
+    return scene;
+}
+
+std::shared_ptr<const StudyScene> generated_scene(const std::string& kind, std::int64_t shapes, std::int64_t width) {
+    Scene scene = generated_description(kind, shapes);
     set_width(scene, width);
-    return std::make_shared<const StudyScene>(StudyScene{generated_name(kind, shapes), compile<float>(scene)});
+    return std::make_shared<const StudyScene>(StudyScene{scene.name, compile<float>(scene)});
 }
 
 }  // namespace raypool::studies

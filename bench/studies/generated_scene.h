@@ -24,6 +24,9 @@ class GeneratedScene {
     ScratchFolder folder_;
 };
 
+/// What is in them. Named by its kind and size.
+Scene generated_description(const std::string& kind, std::int64_t shapes);
+
 /// One at a width, compiled.
 std::shared_ptr<const StudyScene> generated_scene(const std::string& kind, std::int64_t shapes, std::int64_t width);
 

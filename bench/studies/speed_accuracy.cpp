@@ -9,6 +9,7 @@
 
 #include "bench/accuracy/configuration.h"
 #include "bench/accuracy/reference.h"
+#include "bench/studies/generated_scene.h"
 #include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
 #include "bench/studies/runner.h"
@@ -120,12 +121,18 @@ AccuracyPlan accuracy_plan(const StudyOptions& options) {
     return plan;
 }
 
+/// The one that is given; or some that are built in, and two with meshes: many small things, and a room.
 std::vector<SharedScene> scenes_of(const StudyOptions& options) {
-    std::vector<std::string> names{"paper", "cornell", "glass_stack", "half_sky"};
-    if (options.is_scene_given) names = {options.scene};
+    std::vector<Scene> described;
+    if (options.is_scene_given) {
+        described.push_back(load_scene(options.scene));
+    } else {
+        for (const char* name : {"paper", "cornell", "glass_stack", "half_sky"}) described.push_back(load_scene(name));
+        for (const char* kind : {"field", "room"})
+            described.push_back(generated_description(kind, options.is_quick ? 1000 : 10'000));
+    }
     std::vector<SharedScene> scenes;
-    for (const std::string& name : names) {
-        Scene scene = load_scene(name);
+    for (Scene& scene : described) {
         set_width(scene, choose(options, options.width, {64, 112}));
         scenes.push_back(std::make_shared<const accuracy::SceneInBoth>(scene));
     }
