@@ -205,7 +205,10 @@ RAYPOOL_INLINE void walk_beam(const Tree& tree, const Beam<Wide<ScalarOf<Real>, 
             bool is_improved = false;
             if constexpr (IsInstance<typename Tree::Block>) {  // whose space the beam is not in
                 for (int p = 0; p < packets; ++p)
-                    meet_instance<features, Real>(tree.objects, block, ready[p], Mask<Real>(true), hit[p], work);
+                    meet_instance<features, Real>(tree.objects, block, ready[p],
+                                                  lanes_before<Real>(static_cast<std::size_t>(
+                                                      std::clamp(count - p * kLanes<Real>, 0, kLanes<Real>))),
+                                                  hit[p], work);
                 is_improved = true;
             } else {
                 for (unsigned bits = beam.template may_meet<features>(block, limit); bits != 0; bits &= bits - 1) {

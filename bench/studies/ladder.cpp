@@ -94,6 +94,7 @@ std::vector<Case> ladder_cases(const StudyOptions& options) {
 #ifdef RAYPOOL_HAS_EMBREE
         using peers::EmbreeEngine;
         using peers::EmbreeRays;
+        if (!scene->compiled.instance_tree.blocks.empty()) continue;  // which they have not
         for (const NamedEngine& engine :
              {NamedEngine{"Embree, single rays", std::make_shared<EmbreeEngine>(EmbreeRays::Single)},
               NamedEngine{"Embree, packets", std::make_shared<EmbreeEngine>(EmbreeRays::Packet)}}) {

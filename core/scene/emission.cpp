@@ -1,6 +1,7 @@
 #include "core/scene/emission.h"
 
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 
@@ -36,8 +37,16 @@ double enclosing_radius(const Scene& scene) {
         for (const Vector3d& corner : {quad.corner, Vector3d(quad.corner + quad.edge_u)})
             box.extend(corner).extend(Vector3d(corner + quad.edge_v));
     }
-    for (const MeshShape& shape : scene.meshes)
-        for (const auto& position : shape.mesh->positions) box.extend(shape.placed(position));
+    std::map<const Mesh*, Mesh::Box> boxes;  // of objects: they may have very many instances
+    for (const MeshShape& shape : scene.meshes) {
+        if (shape.is_instance) {
+            const auto [found, is_new] = boxes.try_emplace(shape.mesh.get());
+            if (is_new) found->second = shape.mesh->box();
+            for (const auto& corner : found->second.corners()) box.extend(shape.placed(corner));
+        } else {
+            for (const auto& position : shape.mesh->positions) box.extend(shape.placed(position));
+        }
+    }
     return box.isEmpty() ? 1 : box.diagonal().norm() / 2;
 }
 

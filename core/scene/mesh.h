@@ -8,6 +8,7 @@
 /// Triangles may be degenerate (of no area, or with one vertex twice), and vertices may be used by none.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -28,6 +29,28 @@ struct Mesh {
 
     [[nodiscard]] std::size_t vertex_count() const { return positions.size(); }
     [[nodiscard]] std::size_t triangle_count() const { return triangles.size(); }
+
+    /// Of the positions along the axes.
+    struct Box {
+        std::array<float, 3> low, high;
+        [[nodiscard]] std::array<std::array<float, 3>, 8> corners() const {
+            std::array<std::array<float, 3>, 8> all;
+            for (std::size_t i = 0; i < all.size(); ++i)
+                for (std::size_t axis = 0; axis < 3; ++axis) all[i][axis] = ((i >> axis & 1U) == 0 ? low : high)[axis];
+            return all;
+        }
+    };
+    /// Of a mesh that has a vertex.
+    [[nodiscard]] Box box() const {
+        Box box{positions.at(0), positions.at(0)};
+        for (const auto& position : positions) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                box.low[axis] = std::min(box.low[axis], position[axis]);
+                box.high[axis] = std::max(box.high[axis], position[axis]);
+            }
+        }
+        return box;
+    }
 
     /// Makes the triangles of a polygon, a fan around the corner that is added first.
     class Fan {

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -101,11 +102,11 @@ std::shared_ptr<const Mesh> mesh_by_keys(JsonObject& object, const SceneImages& 
     return std::make_shared<const Mesh>(file ? mesh_of_file(*file, files) : inline_mesh(object));
 }
 
-/// By the key "transform", which is optional.
-void place(JsonObject& object, MeshShape& shape) {
+/// By the key "transform", which is optional. `positions` are those of the mesh, or others that hold them all.
+void place(JsonObject& object, MeshShape& shape, std::span<const std::array<float, 3>> positions) {
     if (const auto transform = object.optional("transform"))
         shape.transform = parse_transform(JsonObject(*transform)).affine();
-    for (const auto& position : shape.mesh->positions) {
+    for (const auto& position : positions) {
         const Vector3d placed = shape.placed(position);
         if (!(placed.cwiseAbs().maxCoeff() <= kMaxLength))
             object.place().refuse(fmt::format("keep its vertices within {:g}", kMaxLength),
@@ -117,21 +118,22 @@ void place(JsonObject& object, MeshShape& shape) {
 
 MeshShape parse_mesh(JsonObject& object, const SceneImages& files) {
     MeshShape shape{mesh_by_keys(object, files)};
-    place(object, shape);
+    place(object, shape, shape.mesh->positions);
     return shape;
 }
 
-std::shared_ptr<const Mesh> parse_object(JsonObject object, const SceneImages& files) {
+MeshObject parse_object(JsonObject object, const SceneImages& files) {
     object.required("type").one_of({"mesh"});
-    std::shared_ptr<const Mesh> mesh = mesh_by_keys(object, files);
+    MeshObject made{mesh_by_keys(object, files), {}};
+    made.corners = made.mesh->box().corners();
     object.refuse_unknown_keys();
-    return mesh;
+    return made;
 }
 
-MeshShape parse_instance(JsonObject& object, std::shared_ptr<const Mesh> mesh) {
-    MeshShape shape{std::move(mesh)};
+MeshShape parse_instance(JsonObject& object, const MeshObject& of) {
+    MeshShape shape{of.mesh};
     shape.is_instance = true;
-    place(object, shape);
+    place(object, shape, of.corners);
     return shape;
 }
 

@@ -3,6 +3,7 @@
 /// Called by scene_parser.cpp alone.
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "core/scene/json_cursor.h"
@@ -14,10 +15,15 @@ namespace raypool {
 /// optional. Refuses what is placed beyond kMaxLength. The material is left to the caller.
 MeshShape parse_mesh(JsonObject& object, const SceneImages& files);
 
-/// A mesh by the same keys, less "transform": what instances stand for.
-std::shared_ptr<const Mesh> parse_object(JsonObject object, const SceneImages& files);
+/// What instances stand for. Its box is all that is looked at for each of them.
+struct MeshObject {
+    std::shared_ptr<const Mesh> mesh;
+    std::array<std::array<float, 3>, 8> corners;
+};
+/// A mesh by the same keys, less "transform".
+MeshObject parse_object(JsonObject object, const SceneImages& files);
 
-/// An instance of an object, placed by "transform", which is optional; refuses as parse_mesh() does.
-MeshShape parse_instance(JsonObject& object, std::shared_ptr<const Mesh> mesh);
+/// An instance, placed by "transform", which is optional. Refuses a box that is placed beyond kMaxLength.
+MeshShape parse_instance(JsonObject& object, const MeshObject& of);
 
 }  // namespace raypool

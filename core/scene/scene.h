@@ -132,6 +132,9 @@ struct MeshShape {
     [[nodiscard]] bool is_mirrored() const { return transform.leftCols<3>().determinant() < 0; }
 };
 
+/// The most triangles of instances, with all other shapes.
+inline constexpr std::int64_t kMaxShownTriangles = std::int64_t{1} << 29;
+
 /// A primitive's id counts through all shapes in this order: spheres, quads, planes, the triangles of meshes that are
 /// no instances, and those of instances.
 struct Scene {

@@ -214,6 +214,11 @@ class SceneReader {
             const JsonCursor shape = object.required("shape");
             const auto named = objects_.find(shape.text());
             if (named == objects_.end()) shape.refuse("name one of the objects");
+            shown_triangles_ += std::ssize(named->second.mesh->triangles);
+            if (shown_triangles_ > kMaxShownTriangles) {
+                shape.refuse(fmt::format("keep the triangles of all instances to {}", kMaxShownTriangles),
+                             fmt::format("{} with this one", shown_triangles_));
+            }
             add_mesh(object, parse_instance(object, named->second));
         } else {
             Plane plane;
@@ -241,7 +246,8 @@ class SceneReader {
     Scene scene_;
     std::map<std::string, std::int32_t> texture_ids_;
     std::map<std::string, std::int32_t> material_ids_;
-    std::map<std::string, std::shared_ptr<const Mesh>> objects_;
+    std::map<std::string, MeshObject> objects_;
+    std::int64_t shown_triangles_ = 0;
 };
 
 }  // namespace

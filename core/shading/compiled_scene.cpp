@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <span>
 #include <utility>
@@ -80,11 +79,13 @@ class Compiler {
         static_assert(kMostBoxes <= std::size_t{1} << PlanarMark<Scalar>::kGroupBits, "a group is an id");
         std::size_t count = scene_.spheres.size() + scene_.quads.size() + scene_.planes.size();
         std::size_t vertices = 0;
+        std::size_t instances = 0;
         std::size_t instanced = 0;  // triangles
         std::set<std::pair<const Mesh*, bool>> objects;
         for (const MeshShape& shape : scene_.meshes) {
             const Mesh& mesh = *shape.mesh;
             if (scene_.is_instance(shape)) {
+                ++instances;
                 instanced += mesh.triangles.size();
                 if (!objects.emplace(&mesh, shape.is_mirrored()).second) continue;
             }
@@ -95,7 +96,10 @@ class Compiler {
             throw InputError(fmt::format("meshes of {} vertices: must have at most {}", vertices, 3 * kMostBoxes));
         if (count > kMostBoxes)
             throw InputError(fmt::format("scene of {} shapes: must have at most {}", count, kMostBoxes));
-        constexpr std::size_t kMostIds = std::numeric_limits<std::int32_t>::max();
+        if (instances > kMostBoxes)
+            throw InputError(fmt::format("scene of {} instances: must have at most {}", instances, kMostBoxes));
+        constexpr std::size_t kMostIds = std::size_t{1} << PlanarMark<Scalar>::kGroupBits;
+        static_assert(kMostIds == kMaxShownTriangles);
         if (count + instanced > kMostIds)
             throw InputError(
                 fmt::format("instances of {} triangles: a scene must have at most {} shapes", instanced, kMostIds));
@@ -203,7 +207,7 @@ class Compiler {
     void add_meshes() {
         const auto add_all = [&](bool are_instances, auto add) {
             for (const MeshShape& shape : scene_.meshes) {
-                if (scene_.is_instance(shape) != are_instances) continue;
+                if (scene_.is_instance(shape) != are_instances || shape.mesh->triangles.empty()) continue;
                 out_.surfaces.push_back(surface_row(shape.material_id, Shape::Mesh));
                 add(shape, out_.surfaces.size() - 1);
             }

@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/base/error.h"
+#include "core/scene/scene_hash.h"
 #include "tests/equivalence/every_nth.h"
 #include "tests/equivalence/same_image.h"
 #include "tests/meshes.h"
@@ -84,7 +86,6 @@ TEST(Instances, StandWhereMeshesWould) {
     const Rendered meshes = render(recursive::RecursiveEngine(), compile<double>(scene_of_instances(false)), settings);
     for (int channel = 0; channel < 3; ++channel)
         EXPECT_NEAR(instances.mean(channel), meshes.mean(channel), 0.02 * meshes.mean(channel));
-    EXPECT_NE(instances.hash(), "");
 }
 
 template <class Scalar>
@@ -124,7 +125,53 @@ TEST(Instances, AreMeshesWhereTheyShine) {
     Scene scene = scene_of_instances(true);
     for (MeshShape& shape : scene.meshes) shape.material_id = 0;
     scene.materials[0].kind = Material::Kind::Emissive;
-    EXPECT_TRUE(compile<float>(scene).instance_tree.blocks.empty());
+    const CompiledScene<float> compiled = compile<float>(scene);
+    EXPECT_TRUE(compiled.instance_tree.blocks.empty());
+    EXPECT_GT(compiled.lights.size(), compiled.triangles.size() / 2);
+}
+
+/// An object whose triangles have no area is not there, and its instances hide nothing of others.
+TEST(Instances, OfNothingAreNotThere) {
+    Scene scene = scene_of_instances(true);
+    const std::string before =
+        render(recursive::RecursiveEngine(), compile<float>(scene), settings_of(LightSampling::None)).hash();
+    Mesh flat;
+    flat.positions = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
+    flat.triangles = {{0, 1, 2}, {0, 0, 1}};
+    for (const Mesh& nothing : {flat, Mesh{}}) {
+        MeshShape shape{std::make_shared<const Mesh>(nothing)};
+        shape.is_instance = true;
+        shape.material_id = scene.meshes.front().material_id;
+        scene.meshes.push_back(shape);
+        EXPECT_EQ(render(recursive::RecursiveEngine(), compile<float>(scene), settings_of(LightSampling::None)).hash(),
+                  before);
+        EXPECT_EQ(render(WavefrontEngine({}), compile<float>(scene), settings_of(LightSampling::None)).hash(), before);
+    }
+}
+
+TEST(Instances, AreHashedWithTheirScene) {
+    const Scene scene = scene_of_instances(true);
+    const std::string hash = scene_hash(scene);
+    Scene other = scene;
+    std::swap(other.meshes[3].mesh, other.meshes[4].mesh);
+    EXPECT_NE(scene.meshes[3].mesh, scene.meshes[4].mesh);
+    EXPECT_NE(scene_hash(other), hash);
+    other = scene;
+    other.meshes[3].is_instance = false;
+    EXPECT_NE(scene_hash(other), hash);
+    other = scene;
+    other.meshes[3].transform(0, 3) += 1;
+    EXPECT_NE(scene_hash(other), hash);
+    other = scene;
+    other.meshes[3].material_id = other.meshes[3].material_id == 0 ? 1 : 0;
+    EXPECT_NE(scene_hash(other), hash);
+}
+
+TEST(Instances, AreRefusedWhereTheyShowTooMuch) {
+    Scene scene = test::scene_of(test::icosphere(6));  // 81,920 triangles
+    scene.meshes[0].is_instance = true;
+    scene.meshes.resize(6600, scene.meshes[0]);
+    EXPECT_THROW(compile<float>(scene), InputError);
 }
 
 /// A thousand of a ball take no more memory than one ball and a row and a share of the tree each.

@@ -282,6 +282,17 @@ TYPED_TEST(TrianglesOf, LetNothingThroughWhereTheyAreInstances) {
             return next.primitive_id < scene.first_instanced || next.primitive_id == hit.primitive_id;
         };
         EXPECT_EQ(count_of(ray_count() / 8, 56, passes), 0) << shape.transform;
+
+        // From far away, where the origin is all of the rounding, toward a place within.
+        const auto misses = [&](RandomInputs& random, std::int64_t) {
+            const Vec3<Scalar> to = within(random);
+            const Vec3<Scalar> from = to + static_cast<Scalar>(1e4) * random.direction<Scalar>();
+            return hit_of(scene, Ray<Scalar>{from, unit<Scalar>(to - from), 0}, kNoPrimitive).primitive_id <
+                   scene.first_instanced;
+        };
+        if (std::same_as<Scalar, double> || round < 4) {
+            EXPECT_EQ(count_of(ray_count() / 8, 57, misses), 0) << shape.transform;
+        }
     }
 }
 
