@@ -119,7 +119,7 @@ void info(const std::string& name) {
     if (!compiled.instance_tree.nodes.empty())
         print("instance tree: {} nodes, depth {}\n", compiled.instance_tree.nodes.size(), compiled.instance_tree.depth);
     print("pool of a thread: {} records, for trees of {} and a second-level cache of {}\n",
-          wavefront::pool_capacity(wavefront::PoolSettings{}, compiled), bytes_text(wavefront::tree_bytes(compiled)),
+          wavefront::pool_capacity(wavefront::PoolSettings{}, compiled, 1), bytes_text(wavefront::tree_bytes(compiled)),
           bytes_text(second_level_cache()));
     ImageSettings settings;  // as a render has them that is told nothing else
     settings.light_sampling = parse_light_sampling(CommonOptions().light_sampling);

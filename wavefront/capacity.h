@@ -32,20 +32,27 @@ std::size_t tree_bytes(const SceneView<Scalar>& scene) {
            of_objects;
 }
 
-/// Records of the pool of a thread: a power of two in [kThreadCapacity, 16 kThreadCapacity], for trees of so many bytes
-/// and a second-level cache of so many, > 0.
-constexpr std::int64_t thread_capacity(std::size_t tree_bytes, std::size_t cache_bytes) {
-    constexpr std::size_t kMostGrowth = 16;
+/// Of the pools of all threads together: they would take gigabytes.
+inline constexpr std::int64_t kMostRecordsOfAll = std::int64_t{1} << 24;
+
+/// Records of the pool of each of `threads` threads: a power of two in [kThreadCapacity, 64 kThreadCapacity], for trees
+/// of so many bytes and a second-level cache of so many, > 0. Where there are many threads it is smaller, down to
+/// kThreadCapacity, so that all together hold at most kMostRecordsOfAll.
+constexpr std::int64_t thread_capacity(std::size_t tree_bytes, std::size_t cache_bytes, int threads) {
+    constexpr std::size_t kMostGrowth = 64;
     const std::size_t growth = std::clamp<std::size_t>(tree_bytes / cache_bytes, 1, kMostGrowth);
-    return PoolSettings::kThreadCapacity * static_cast<std::int64_t>(std::bit_floor(growth));
+    std::int64_t capacity = PoolSettings::kThreadCapacity * static_cast<std::int64_t>(std::bit_floor(growth));
+    while (capacity > PoolSettings::kThreadCapacity && capacity * threads > kMostRecordsOfAll) capacity /= 2;
+    return capacity;
 }
 
-/// Records of each pool in a render of the scene: what the settings say, or as many as suit the trees and this machine.
+/// Records of each pool in a render of the scene by `threads` threads: what the settings say, or as many as suit the
+/// trees and this machine.
 template <class Scalar>
-std::int64_t pool_capacity(const PoolSettings& pool, const SceneView<Scalar>& scene) {
+std::int64_t pool_capacity(const PoolSettings& pool, const SceneView<Scalar>& scene, int threads) {
     if (pool.capacity != PoolSettings::kAutomatic) return pool.capacity;
     if (pool.scope == PoolScope::Shared) return PoolSettings::kSharedCapacity;
-    return thread_capacity(tree_bytes(scene), second_level_cache());
+    return thread_capacity(tree_bytes(scene), second_level_cache(), threads);
 }
 
 }  // namespace raypool::wavefront

@@ -32,7 +32,7 @@ class PoolSession : public RenderSession {
                 Framebuffer& framebuffer, std::size_t record_bytes)
         : begin_s_(wall_seconds()),
           settings_(settings),
-          pool_(with_capacity(pool, scene)),
+          pool_(with_capacity(pool, scene, settings.threads)),
           framebuffer_(framebuffer),
           context_{scene,
                    settings_,
@@ -84,8 +84,8 @@ class PoolSession : public RenderSession {
     }
 
   private:
-    static PoolSettings with_capacity(PoolSettings pool, const CompiledScene<Scalar>& scene) {
-        pool.capacity = pool_capacity(pool, scene);
+    static PoolSettings with_capacity(PoolSettings pool, const CompiledScene<Scalar>& scene, int threads) {
+        pool.capacity = pool_capacity(pool, scene, threads);
         return pool;
     }
 

@@ -17,16 +17,24 @@ constexpr std::size_t kCache = std::size_t{1} << 20U;
 
 TEST(ThreadCapacity, FitsTheCacheWhereTheTreesDo) {
     for (const std::size_t bytes : {std::size_t{0}, std::size_t{1}, kCache / 2, kCache, 2 * kCache - 1})
-        EXPECT_EQ(thread_capacity(bytes, kCache), 8192) << bytes;
+        EXPECT_EQ(thread_capacity(bytes, kCache, 1), 8192) << bytes;
 }
 
-TEST(ThreadCapacity, GrowsWithTheTreesUpToSixteenfold) {
-    EXPECT_EQ(thread_capacity(2 * kCache, kCache), 16384);
-    EXPECT_EQ(thread_capacity(5'600'000, kCache), 32768);  // 100,000 spheres
-    EXPECT_EQ(thread_capacity(16 * kCache, kCache), 131072);
-    EXPECT_EQ(thread_capacity(56'000'000, kCache), 131072);  // a million
-    EXPECT_EQ(thread_capacity(std::numeric_limits<std::size_t>::max(), kCache), 131072);
-    EXPECT_EQ(thread_capacity(std::numeric_limits<std::size_t>::max(), 1), 131072);
+TEST(ThreadCapacity, GrowsWithTheTreesUpTo64Fold) {
+    EXPECT_EQ(thread_capacity(2 * kCache, kCache, 1), 16384);
+    EXPECT_EQ(thread_capacity(5'600'000, kCache, 1), 32768);  // 100,000 spheres
+    EXPECT_EQ(thread_capacity(16 * kCache, kCache, 1), 131072);
+    EXPECT_EQ(thread_capacity(56'000'000, kCache, 1), 262144);  // a million
+    EXPECT_EQ(thread_capacity(std::numeric_limits<std::size_t>::max(), kCache, 1), 524288);
+    EXPECT_EQ(thread_capacity(std::numeric_limits<std::size_t>::max(), 1, 1), 524288);
+}
+
+TEST(ThreadCapacity, OfManyThreadsIsBoundedTogether) {
+    EXPECT_EQ(thread_capacity(100 * kCache, kCache, 32), 524288);
+    EXPECT_EQ(thread_capacity(100 * kCache, kCache, 33), 262144);
+    EXPECT_EQ(thread_capacity(100 * kCache, kCache, 1024), 16384);
+    EXPECT_EQ(thread_capacity(100 * kCache, kCache, 4096), 8192);
+    EXPECT_EQ(thread_capacity(0, kCache, 4096), 8192);
 }
 
 /// Of trees of some ten times the smallest cache that there is.
@@ -47,9 +55,9 @@ Scene many_spheres() {
 
 TEST(PoolCapacity, IsWhatTheSettingsSayOrElseFollowsTheScene) {
     const CompiledScene<float> scene = compile<float>(many_spheres());
-    EXPECT_EQ(pool_capacity({.capacity = 100}, scene), 100);
-    EXPECT_EQ(pool_capacity({.scope = PoolScope::Shared}, scene), PoolSettings::kSharedCapacity);
-    EXPECT_EQ(pool_capacity({}, scene), thread_capacity(tree_bytes(scene), second_level_cache()));
+    EXPECT_EQ(pool_capacity({.capacity = 100}, scene, 1), 100);
+    EXPECT_EQ(pool_capacity({.scope = PoolScope::Shared}, scene, 1), PoolSettings::kSharedCapacity);
+    EXPECT_EQ(pool_capacity({}, scene, 3), thread_capacity(tree_bytes(scene), second_level_cache(), 3));
     EXPECT_GT(tree_bytes(scene), std::size_t{60'000} / 8 * sizeof(scene.sphere_tree.blocks[0]));
     EXPECT_LT(tree_bytes(scene), scene.bytes());
 }
@@ -63,7 +71,8 @@ TEST(PoolCapacity, OfASessionIsReportedAndChangesNoBit) {
         const PoolSettings pool{.capacity = capacity};
         Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(2, scene.max_radiance));
         const RenderReport report = WavefrontEngine(pool).render(scene, settings, framebuffer);
-        EXPECT_EQ(pool_report(report).pool_rays, static_cast<std::size_t>(pool_capacity(pool, scene)));
+        EXPECT_EQ(pool_report(report).pool_rays,
+                  static_cast<std::size_t>(pool_capacity(pool, scene, settings.threads)));
         if (expected.empty()) expected = framebuffer.hash();
         EXPECT_EQ(framebuffer.hash(), expected);
     }
