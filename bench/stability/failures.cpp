@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numeric>
 
 #include <nlohmann/json.hpp>
@@ -14,16 +13,14 @@
 #include "core/base/error.h"
 #include "core/scene/scene_parser.h"
 #include "recursive/engine.h"
-#include "tests/meshes.h"
 
 namespace raypool::stability {
 
 namespace {
 
 /// In the order of NaiveVariant.
-constexpr const char* kVariantNames[] = {"least distance",   "half-b",           "truncation",
-                                         "id alone",         "whole shadow ray", "short shadow ray",
-                                         "moeller-trumbore", "triangle alone",   "no sine"};
+constexpr const char* kVariantNames[] = {"least distance",   "half-b",           "truncation", "id alone",
+                                         "whole shadow ray", "short shadow ray", "no sine"};
 
 NaiveVariant variant_named(const std::string& name) {
     const auto* const found = std::find(std::begin(kVariantNames), std::end(kVariantNames), name);
@@ -39,10 +36,6 @@ Scene scene_of(const nlohmann::json& entry) {
                                      const bool is_sun = column == sky.at("sun_column") && row == sky.at("sun_row");
                                      return sky.at(is_sun ? "sun" : "radiance").get<double>();
                                  }).image;
-    }
-    if (entry.contains("ball_levels")) {
-        const auto ball = std::make_shared<const Mesh>(test::icosphere(entry.at("ball_levels")));
-        for (MeshShape& shape : scene.meshes) shape.mesh = ball;
     }
     return scene;
 }

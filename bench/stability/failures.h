@@ -13,15 +13,13 @@ namespace raypool::stability {
 
 /// One naive method in the place of ours.
 enum class NaiveVariant : std::uint8_t {
-    LeastDistance,    ///< a hit closer than 1e-3 does not count, and a ray does not know what it leaves
-    HalfB,            ///< the quadratic of the books
-    Truncation,       ///< checkers by rounding towards zero
-    IdAlone,          ///< methods are ours, but no shapes are held to coincide: a ray leaves one shape, by its id
-    WholeShadowRay,   ///< what a shadow ray meets closer than the light hides it, the light itself too
-    ShortShadowRay,   ///< a shadow ray ends at 1 - 1e-4 of its way
-    MoellerTrumbore,  ///< the triangles of the book
-    TriangleAlone,    ///< a ray leaves a triangle at the point that it met along the ray, by the triangle's id alone
-    NoSine            ///< an image's density of directions is one over the square, without the sine of the angle
+    LeastDistance,   ///< a hit closer than 1e-3 does not count, and a ray does not know what it leaves
+    HalfB,           ///< the quadratic of the books
+    Truncation,      ///< checkers by rounding towards zero
+    IdAlone,         ///< methods are ours, but no shapes are held to coincide: a ray leaves one shape, by its id
+    WholeShadowRay,  ///< what a shadow ray meets closer than the light hides it, the light itself too
+    ShortShadowRay,  ///< a shadow ray ends at 1 - 1e-4 of its way
+    NoSine           ///< an image's density of directions is one over the square, without the sine of the angle
 };
 
 /// Adds the settings' samples, of independent numbers, in single precision, one path after the other.
@@ -34,8 +32,7 @@ struct Failure {
     Scene scene;
 };
 /// The entries of failures.json, whose scenes are written as docs/scene-format.md says. Instead of the background there
-/// may be a "sky": a grey image with a sun in one texel. With "ball_levels" every mesh is a ball of 20 4^levels
-/// triangles.
+/// may be a "sky": a grey image with a sun in one texel.
 const std::vector<Failure>& all_failures();
 
 /// One scene three times: by the naive method, by the engine in float, and by the engine in double. Lights, if there

@@ -7,7 +7,6 @@
 
 #include "bench/naive/checkers.h"
 #include "bench/naive/spheres.h"
-#include "bench/naive/triangles.h"
 #include "bench/stability/failures.h"
 #include "core/geometry/occlusion.h"
 #include "core/shading/shade.h"
@@ -31,16 +30,13 @@ float half_b_distance(const Ray<float>& ray, const Vec3<float>& center, float ra
     return naive::half_b_distance<float>(ray.origin, ray.direction, center, radius);
 }
 
-/// A scene whose spheres are tested one by one, by `distance`; and its triangles by the naive test, if it is that one.
-class NaiveShapes {
+/// A scene whose spheres are tested one by one, by `distance`.
+class NaiveSpheres {
   public:
-    NaiveShapes(const SceneView<float>& scene, SphereDistance distance, NaiveVariant variant)
+    NaiveSpheres(const SceneView<float>& scene, SphereDistance distance)
         : scene_(scene), others_(static_cast<const ShapeView<float>&>(scene)), distance_(std::move(distance)) {
         others_.large_spheres = {};
         others_.sphere_tree = {};
-        if (variant != NaiveVariant::MoellerTrumbore) return;
-        others_.triangle_tree = {};
-        triangles_ = scene.triangle_tree.blocks;
     }
 
     [[nodiscard]] Hit<float> closest_hit(const Ray<float>& ray, std::int32_t leaving_id) const {
@@ -55,22 +51,12 @@ class NaiveShapes {
                 }
             }
         }
-        for (const auto& block : triangles_) {
-            for (int i = 0; i < block.kLanes && block.id[i] != kNoPrimitive; ++i) {
-                std::array<Vec3<float>, 3> vertex;
-                for (std::size_t k = 0; k < 3; ++k)
-                    for (int axis = 0; axis < 3; ++axis) vertex[k][axis] = block.vertex[k][axis][i];
-                const float t = naive::moeller_trumbore_distance<float>(ray.origin, ray.direction, vertex);
-                if (t < hit.t && block.id[i] != leaving_id) hit = {t, block.id[i]};
-            }
-        }
         return hit;
     }
 
   private:
     const SceneView<float>& scene_;
     ShapeView<float> others_;
-    decltype(ShapeView<float>().triangle_tree.blocks) triangles_;
     SphereDistance distance_;
 };
 
@@ -99,14 +85,14 @@ CompiledScene<float> plain_checkers(Scene scene, bool is_odd) {
 }
 
 /// Whether nothing lies within that part of the way to the sampled point of a light.
-bool is_free(const NaiveShapes& scene, const RayStart<float>& start, const LightSample<float>& light, float part) {
+bool is_free(const NaiveSpheres& scene, const RayStart<float>& start, const LightSample<float>& light, float part) {
     const Vec3<float> point = along<float>(start.origin, light.t, light.direction);
     const Vec3<float> to = point - start.origin;
     const float distance = to.norm();
     return !(scene.closest_hit({start.origin, to / distance, 0}, start.leaving_id).t < part * distance);
 }
-bool is_seen(NaiveVariant variant, const SceneView<float>& ours, const NaiveShapes& scene, const RayStart<float>& start,
-             const LightSample<float>& light) {
+bool is_seen(NaiveVariant variant, const SceneView<float>& ours, const NaiveSpheres& scene,
+             const RayStart<float>& start, const LightSample<float>& light) {
     if (variant == NaiveVariant::WholeShadowRay) return is_free(scene, start, light, 1);
     if (variant == NaiveVariant::ShortShadowRay) return is_free(scene, start, light, 1 - 1e-4F);
     NoTestCount work;
@@ -144,11 +130,9 @@ void render_naively(NaiveVariant variant, const Scene& scene, const RenderSettin
     const SceneView<float> ours = variant == NoSine ? without_sine(view, texels) : view;
     const LightSampling sampling = needed_light_sampling(ours.features, settings);
     const std::array plain{plain_checkers(scene, false), plain_checkers(scene, true)};
-    const NaiveShapes shapes(ours,
-                             variant == LeastDistance ? least_distance
-                             : variant == HalfB       ? half_b_distance
-                                                      : our_distance,
-                             variant);
+    const NaiveSpheres spheres(ours, variant == LeastDistance ? least_distance
+                                     : variant == HalfB       ? half_b_distance
+                                                              : our_distance);
     const RandomSeed seed = random_seed(settings.seed, settings.sampler);
     const auto radiance = [&](std::int64_t x, std::int64_t y, const PathKey<float>& key) {
         Ray<float> ray = camera_ray<kEverything, float>(ours.camera, static_cast<float>(x), static_cast<float>(y),
@@ -161,7 +145,7 @@ void render_naively(NaiveVariant variant, const Scene& scene, const RenderSettin
         std::int32_t leaving_id = kNoPrimitive;
         for (std::uint32_t step = 0; step < static_cast<std::uint32_t>(settings.depth); ++step) {
             lights.arriving_density = lights.density;
-            const Hit<float> hit = shapes.closest_hit(ray, leaving_id);
+            const Hit<float> hit = spheres.closest_hit(ray, leaving_id);
             if (hit.primitive_id == kNoPrimitive)
                 return Vec3<float>(sum + escaping_radiance<kEverything, float>(ours, ray.direction, throughput,
                                                                                sampling, lights.arriving_density));
@@ -169,13 +153,11 @@ void render_naively(NaiveVariant variant, const Scene& scene, const RenderSettin
             const SceneView<float>& looks = variant == Truncation ? plain[is_odd ? 1 : 0] : ours;
             const Scattered<float> out = scatter<kEverything, float>(looks, ray, hit.t, hit.primitive_id, throughput,
                                                                      key, step, seed, 0, false, &lights);
-            if (lights.has_shadow_ray && is_seen(variant, ours, shapes, out.start, lights.light))
+            if (lights.has_shadow_ray && is_seen(variant, ours, spheres, out.start, lights.light))
                 sum += lights.radiance;
             if (out.is_emitter) return Vec3<float>(sum + out.throughput);
             if (!out.is_alive) break;
-            const bool is_of_book = variant == TriangleAlone && hit.primitive_id >= ours.first_triangle;
-            ray = {is_of_book ? along<float>(ray.origin, hit.t, ray.direction) : out.start.origin, out.direction,
-                   ray.time};
+            ray = {out.start.origin, out.direction, ray.time};
             leaving_id = out.start.leaving_id;
             throughput = out.throughput;
         }

@@ -122,13 +122,6 @@ FAILURES = {
     "shade": ("Shade: a shadow ray that ends at 1 - 1e-4 of its way",
               "Two ten-thousandths before the blue lamp is a shade, which hides all of it. The naive method's shadow rays end "
               "before the shade, so that the scene has a light that is not there. Ours ends at the lamp."),
-    "cracks": ("Cracks: the test of Moeller and Trumbore, 8000 units from the origin",
-               "Each triangle rounds its edges by itself, so that rays pass between neighbours, and the lamps shine out of the "
-               "closed balls. Ours gives neighbours one point for each vertex, and the side of an edge that they agree on."),
-    "facets": ("Facets: the triangle's id alone, 20 000 units from the origin",
-               "The naive method starts a ray where it met the triangle, along the ray, and knows that it leaves this triangle. "
-               "The point is off it by two thousandths: rays meet its neighbours from beneath, and the glass is dark or none. "
-               "Ours starts above the triangle by the error of the point."),
     "sun": ("Sun: a density without the sine of the angle, 16 degrees from the zenith",
             "The naive method draws the sun as often as it should, and takes the density over the image for one over "
             "the sphere: a high sun sends more than twice its light. Ours divides by the texel's solid angle."),
