@@ -119,7 +119,7 @@ template <Features features, class Real, class Tree, class Found, class Work>
     const SpreadObjectRay<Real> in_object(instance, ray);
     const std::int32_t first = instance.number(Row::kFirstId);
     Placed<Sheared<SpreadRay<Real>, Real>, Real> placed{ray, Placing<Real>::of(instance.value + Row::kTransform),
-                                                        in_object};
+                                                        static_cast<const ObjectRay<Real>&>(in_object)};
     placed.leaving_id -= first;
     count_ids_from(found, first);
     walk<features, Real>(objects, in_object, placed, found, work, child);

@@ -78,9 +78,9 @@ inline Scene instances() {
     test::RandomInputs random(6);
     Scene scene = meshes();
     scene.meshes.resize(1);
-    const std::shared_ptr<const Mesh> objects[] = {std::make_shared<const Mesh>(test::icosphere(2)),
-                                                   std::make_shared<const Mesh>(test::triangle_soup(60, random))};
-    for (int i = 0; i < 40; ++i) {
+    const std::shared_ptr<const Mesh> objects[] = {std::make_shared<const Mesh>(test::icosphere(1)),
+                                                   std::make_shared<const Mesh>(test::triangle_soup(30, random))};
+    for (int i = 0; i < 30; ++i) {
         MeshShape shape{objects[i % 2]};
         shape.is_instance = true;
         Eigen::Affine3d place(
