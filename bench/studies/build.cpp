@@ -182,25 +182,19 @@ std::vector<Cells> built_rows(const std::string& kind, const TracedScene& traced
 std::vector<Case> build_cases(const StudyOptions& options) {
     const Plan plan = plan_of(options, {1, 1}, {3, 5}, core_count());
     const std::int64_t width = choose(options, options.width, {128, 512});
-    constexpr std::int64_t kLargestOfAll = 1'000'000;
     const std::vector<std::string> kinds{"field", "terrain"};
     const std::vector<std::int64_t> sizes = options.is_quick
                                                 ? std::vector<std::int64_t>{1000, 10'000}
                                                 : std::vector<std::int64_t>{10'000, 100'000, 1'000'000, 10'000'000};
 
     std::vector<Case> cases;
-    for (const std::string& kind : kinds) {
-        for (const std::int64_t triangles : sizes) {
-            // All scenes are kept until the end: a gigabyte of this size, and three more while a tree is built.
-            if (triangles > kLargestOfAll && kind != kinds.front()) continue;
-            const auto scene = std::make_shared<Lazy<TracedScene>>(
-                [=, settings = plan.settings] { return TracedScene(kind, triangles, width, settings); });
-            for (const int threads : one_and_all(plan.most_threads))
-                for (const Builder& builder : builders(threads))
-                    cases.push_back({fmt::format("{} {}: {}, {} threads", triangles, kind, builder.name, threads), "",
-                                     plan.repeats, [=] { return built_rows(kind, (*scene)(), builder, threads); }});
-        }
-    }
+    const auto add = [&](const std::string& kind, std::int64_t triangles, const LazyTracedScene& scene) {
+        for (const int threads : one_and_all(plan.most_threads))
+            for (const Builder& builder : builders(threads))
+                cases.push_back({fmt::format("{} {}: {}, {} threads", triangles, kind, builder.name, threads), "",
+                                 plan.repeats, [=] { return built_rows(kind, (*scene)(), builder, threads); }});
+    };
+    for_each_traced_scene(kinds, sizes, width, plan.settings, add);
     return cases;
 }
 

@@ -22,6 +22,19 @@ TracedScene::TracedScene(const std::string& kind, std::int64_t triangles, std::i
     }
 }
 
+void for_each_traced_scene(const std::vector<std::string>& kinds, const std::vector<std::int64_t>& sizes,
+                           std::int64_t width, const RenderSettings& settings,
+                           const std::function<void(const std::string&, std::int64_t, const LazyTracedScene&)>& visit) {
+    constexpr std::int64_t kLargestOfAll = 1'000'000;
+    for (const std::string& kind : kinds) {
+        for (const std::int64_t triangles : sizes) {
+            if (triangles > kLargestOfAll && kind != kinds.front()) continue;
+            visit(kind, triangles,
+                  std::make_shared<Lazy<TracedScene>>([=] { return TracedScene(kind, triangles, width, settings); }));
+        }
+    }
+}
+
 TimedSearch time_search(const RaySearch& search, const TracedRays& traced, bool is_ours, const std::string& who) {
     const auto& [rays, expected] = traced;
     RayAnswers found(rays.count);

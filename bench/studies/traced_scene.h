@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,6 +26,15 @@ struct TracedScene {
     /// Throws std::runtime_error where its render has no rays of a kind.
     TracedScene(const std::string& kind, std::int64_t triangles, std::int64_t width, const RenderSettings& settings);
 };
+
+/// Made when it is wanted.
+using LazyTracedScene = std::shared_ptr<Lazy<TracedScene>>;
+
+/// Calls visit(kind, triangles, scene) for each kind and size, but for the largest sizes of all kinds but the first:
+/// all scenes are kept until the end, with the trees of them, which are gigabytes at ten million triangles.
+void for_each_traced_scene(const std::vector<std::string>& kinds, const std::vector<std::int64_t>& sizes,
+                           std::int64_t width, const RenderSettings& settings,
+                           const std::function<void(const std::string&, std::int64_t, const LazyTracedScene&)>& visit);
 
 /// What a search took, and answers that are not the expected ones.
 struct TimedSearch {

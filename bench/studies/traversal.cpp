@@ -38,7 +38,6 @@ struct TracedSearch {
 std::vector<Case> traversal_cases(const StudyOptions& options) {
     const Plan plan = plan_of(options, {1, 1}, {3, 7}, 1);
     const std::int64_t width = choose(options, options.width, {128, 512});
-    constexpr std::int64_t kLargestOfAll = 1'000'000;
     std::vector<std::int64_t> sizes{1000, 10'000};
     std::vector<std::string> kinds{"field"};
     std::vector<std::size_t> capacities{8192};
@@ -49,24 +48,19 @@ std::vector<Case> traversal_cases(const StudyOptions& options) {
     }
 
     std::vector<Case> cases;
-    for (const std::string& kind : kinds) {
-        for (const std::int64_t triangles : sizes) {
-            // All scenes are kept until the end, with Embree's trees: a few gigabytes at this size.
-            if (triangles > kLargestOfAll && kind != kinds.front()) continue;
-            const auto scene = std::make_shared<Lazy<TracedScene>>(
-                [=, settings = plan.settings] { return TracedScene(kind, triangles, width, settings); });
-            for (const NamedSearch& search : named_searches(capacities)) {
-                const auto made = std::make_shared<Lazy<RaySearch>>(
-                    [=, make = search.make] { return make((*scene)().scene->compiled); });
-                const TracedSearch traced{kind, triangles, search, scene, made};
-                for (std::size_t i = 0; i < kRayKinds.size(); ++i) {
-                    if (i + 1 == kRayKinds.size() && !search.has_shadow_rays) continue;
-                    cases.push_back({fmt::format("{} {}, {} rays: {}", triangles, kind, kRayKinds[i], search.name), "",
-                                     plan.repeats, [=] { return traced.rows(i); }});
-                }
+    const auto add = [&](const std::string& kind, std::int64_t triangles, const LazyTracedScene& scene) {
+        for (const NamedSearch& search : named_searches(capacities)) {
+            const auto made =
+                std::make_shared<Lazy<RaySearch>>([=, make = search.make] { return make((*scene)().scene->compiled); });
+            const TracedSearch traced{kind, triangles, search, scene, made};
+            for (std::size_t i = 0; i < kRayKinds.size(); ++i) {
+                if (i + 1 == kRayKinds.size() && !search.has_shadow_rays) continue;
+                cases.push_back({fmt::format("{} {}, {} rays: {}", triangles, kind, kRayKinds[i], search.name), "",
+                                 plan.repeats, [=] { return traced.rows(i); }});
             }
         }
-    }
+    };
+    for_each_traced_scene(kinds, sizes, width, plan.settings, add);
     return cases;
 }
 

@@ -1,7 +1,6 @@
 #include "core/shading/mesh_rows.h"
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <limits>
 
 namespace raypool {
@@ -95,8 +94,9 @@ template <class Scalar>
 const ObjectRows& MeshRows<Scalar>::object(const MeshShape& shape, std::size_t surface) {
     const auto [found, is_new] = object_of_.try_emplace({shape.mesh.get(), shape.is_mirrored()}, objects_.size());
     if (is_new) {
-        Box box;
-        for (const auto& [x, y, z] : shape.mesh->positions) box.extend({{x, y, z}, {x, y, z}});
+        const auto corner = [](const std::array<float, 3>& p) { return Vector3d(p[0], p[1], p[2]); };
+        const Mesh::Box bounds = shape.mesh->box();
+        const Box box{corner(bounds.low), corner(bounds.high)};
         objects_.push_back({{static_cast<std::uint32_t>(tables_.triangles.size()),
                              static_cast<std::uint32_t>(shape.mesh->triangles.size())},
                             box});

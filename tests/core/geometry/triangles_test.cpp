@@ -5,13 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
-#include <Eigen/Geometry>
-
-#include "core/geometry/occlusion.h"
-#include "core/shading/shade.h"
-#include "tests/core/geometry/brute_force.h"
+#include "tests/core/geometry/mesh_rays.h"
 #include "tests/meshes.h"
 
 namespace raypool::test {
@@ -21,34 +16,9 @@ constexpr Vector3d (*kNowhere)() = [] { return Vector3d(0, 0, 0); };
 constexpr Vector3d (*kFarAway)() = [] { return Vector3d(8000, -5000, 4000); };
 
 template <class Scalar>
-Hit<Scalar> hit_of(const CompiledScene<Scalar>& scene, const Ray<Scalar>& ray, std::int32_t leaving_id) {
-    NoTestCount work;
-    return closest_hit<kEverything>(scene, ray, leaving_id, work);
-}
-template <class Scalar>
-Vec3<Scalar> vertex(const CompiledScene<Scalar>& scene, std::uint32_t triangle, int i) {
-    const auto id = static_cast<std::size_t>(bits_of<Scalar>(scene.triangles[triangle].value[i]));
-    const Scalar* row = scene.vertices[id].value;
-    return vec3<Scalar>(row[0], row[1], row[2]);
-}
-
-template <class Scalar>
 class TrianglesOf : public testing::Test {};
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(TrianglesOf, Scalars);
-
-/// How large the mesh is and how many rays are traced at it: by default what takes a second, else as scripts/leaks
-/// says.
-std::int64_t wanted(const char* name, std::int64_t otherwise) {
-    const char* text = std::getenv(name);
-    return text == nullptr ? otherwise : std::atoll(text);
-}
-int levels() {
-    return static_cast<int>(wanted("RAYPOOL_LEAK_LEVELS", 4));
-}
-std::int64_t ray_count() {
-    return wanted("RAYPOOL_LEAK_RAYS", 100'000);
-}
 
 /// A closed, convex mesh around a point: a sphere so large that its triangles are as large for any number of levels.
 template <class Scalar>
@@ -74,19 +44,6 @@ struct Ball {
         return compile<Scalar>(described);
     }
 };
-
-/// Of `rays` times those of which visit(random, i) is true, on all cores: the same whatever their number.
-template <class Visit>
-std::int64_t count_of(std::int64_t rays, std::uint64_t seed, Visit visit) {
-    constexpr std::int64_t kBlock = 1 << 12;
-    std::int64_t count = 0;
-#pragma omp parallel for schedule(dynamic) reduction(+ : count)
-    for (std::int64_t first = 0; first < rays; first += kBlock) {
-        RandomInputs random(seed + static_cast<std::uint64_t>(first));
-        for (std::int64_t i = first; i < std::min(first + kBlock, rays); ++i) count += visit(random, i) ? 1 : 0;
-    }
-    return count;
-}
 
 /// Rays from within a closed mesh toward its vertices and points of edges.
 TYPED_TEST(TrianglesOf, LetNothingThroughAtVerticesAndEdges) {
@@ -185,115 +142,9 @@ TYPED_TEST(TrianglesOf, LetNothingThroughThatLeavesThemSmooth) {
     }
 }
 
-/// Triangles as they are, or in four instances that are turned, stretched and mirrored, of which two are the same.
-Scene soup(bool are_instances) {
-    RandomInputs random(53);
-    Scene scene = scene_of(triangle_soup(500, random));
-    if (!are_instances) return scene;
-    for (int i = 0; i < 4; ++i) {
-        MeshShape shape = scene.meshes[0];
-        shape.is_instance = true;
-        shape.transform = (Eigen::Translation3d(random.point<double>(1)) *
-                           Eigen::AngleAxisd(random.uniform(0, 6), random.direction<double>()) *
-                           Eigen::Scaling(random.uniform(0.1, 1), random.uniform(0.1, 1), random.uniform(-1, 1)))
-                              .affine();
-        scene.meshes.push_back(shape);
-    }
-    scene.meshes.push_back(scene.meshes.back());
-    scene.meshes.erase(scene.meshes.begin());
-    return scene;
-}
-
-/// The closest of all triangles, one by one; of a tie the first. Nothing is before it, and it is before what lies
-/// behind.
-template <class Scalar>
-void expect_what_is_found_one_by_one(const CompiledScene<Scalar>& scene, std::int64_t otherwise) {
-    const std::int64_t rays = wanted("RAYPOOL_BRUTE_FORCE_RAYS", otherwise);
-    const auto ray_of = [](RandomInputs& inputs) {
-        const Vec3<Scalar> origin = inputs.point<Scalar>(7);
-        return Ray<Scalar>{origin, inputs.direction<Scalar>(), 0};
-    };
-    const auto differs = [&](RandomInputs& inputs, std::int64_t) {
-        const Ray<Scalar> ray = ray_of(inputs);
-        const Hit<Scalar> expected = brute_force_hit<Scalar>(scene, ray, kNoPrimitive);
-        const Hit<Scalar> hit = hit_of(scene, ray, kNoPrimitive);
-        NoTestCount work;
-        const auto is_hidden = [&](Scalar t, Int<Scalar> id) {
-            const Occlusion<Scalar> light{t, static_cast<std::int32_t>(id)};
-            return is_occluded<kEverything>(scene, ray, kNoPrimitive, light, work);
-        };
-        return hit.primitive_id != expected.primitive_id || hit.t != expected.t || is_hidden(hit.t, hit.primitive_id) ||
-               (hit.primitive_id != kNoPrimitive && !is_hidden(2 * hit.t, kNoPrimitive));
-    };
-    EXPECT_EQ(count_of(rays, 54, differs), 0);
-    const auto hits = [&](RandomInputs& inputs, std::int64_t) {
-        return hit_of(scene, ray_of(inputs), kNoPrimitive).primitive_id != kNoPrimitive;
-    };
-    EXPECT_GT(count_of(rays, 54, hits), rays / 4);
-}
 TYPED_TEST(TrianglesOf, AreFoundByTreesAsOneByOne) {
-    expect_what_is_found_one_by_one(compile<TypeParam>(soup(false)), 20'000);
-}
-TYPED_TEST(TrianglesOf, AreFoundInInstancesAsOneByOne) {
-    expect_what_is_found_one_by_one(compile<TypeParam>(soup(true)), 2'000);
-}
-
-/// A closed mesh that is turned, stretched and, every other time, mirrored, at many places: of rays from within toward
-/// its vertices and points of its edges, and of those that leave it, none gets through.
-TYPED_TEST(TrianglesOf, LetNothingThroughWhereTheyAreInstances) {
-    using Scalar = TypeParam;
-    using Row = InstanceRow<Scalar>;
-    RandomInputs places(55);
-    const auto mesh = std::make_shared<const Mesh>(icosphere(std::min(levels(), 5)));
-    for (int round = 0; round < 8; ++round) {
-        Scene described = scene_of(*mesh, Vector3d(1e6, 0, 0));
-        MeshShape shape{mesh};
-        shape.is_instance = true;
-        const Vector3d middle = (round < 4 ? 1 : 8000) * places.direction<double>();
-        shape.transform =
-            (Eigen::Translation3d(middle) * Eigen::AngleAxisd(places.uniform(0, 6), places.direction<double>()) *
-             Eigen::Scaling(places.uniform(0.2, 4), places.uniform(0.2, 4),
-                            (round % 2 == 0 ? 1 : -1) * places.uniform(0.2, 4)))
-                .affine();
-        described.meshes.push_back(shape);
-        const CompiledScene<Scalar> scene = compile<Scalar>(described);
-        const Row& instance = scene.instance_tree.blocks[0];
-        const auto placing = Placing<Scalar>::of(instance.value + Row::kTransform);
-        const auto first = static_cast<std::uint32_t>(instance.number(Row::kFirstTriangle));
-        const auto within = [&](RandomInputs& random) {
-            const Vec3<Scalar> p = random.point<Scalar>(1);
-            return placing.point(static_cast<Scalar>(0.5) * p);
-        };
-        const auto passes = [&](RandomInputs& random, std::int64_t i) {
-            const auto triangle =
-                first + static_cast<std::uint32_t>(random.below(static_cast<int>(mesh->triangles.size())));
-            const Vec3<Scalar> from = within(random);
-            const Vec3<Scalar> a = placing.point(vertex(scene, triangle, 0));
-            const Vec3<Scalar> b = placing.point(vertex(scene, triangle, 1));
-            const auto s = i % 3 == 0 ? Scalar(0) : random.unit_interval<Scalar>();
-            const Vec3<Scalar> target = a + s * (b - a);
-            const Ray<Scalar> ray{from, unit<Scalar>(target - from), 0};
-            const Hit<Scalar> hit = hit_of(scene, ray, kNoPrimitive);
-            if (hit.primitive_id < scene.first_instanced) return true;
-            const Scattered<Scalar> out = scatter<kEverything, Scalar>(
-                scene, ray, hit.t, hit.primitive_id, vec3<Scalar>(1, 1, 1), {static_cast<std::uint32_t>(i), 0}, 0, {});
-            const Hit<Scalar> next = hit_of(scene, Ray<Scalar>{out.start.origin, out.direction, 0},
-                                            static_cast<std::int32_t>(out.start.leaving_id));
-            return next.primitive_id < scene.first_instanced || next.primitive_id == hit.primitive_id;
-        };
-        EXPECT_EQ(count_of(ray_count() / 8, 56, passes), 0) << shape.transform;
-
-        // From far away, where the origin is all of the rounding, toward a place within.
-        const auto misses = [&](RandomInputs& random, std::int64_t) {
-            const Vec3<Scalar> to = within(random);
-            const Vec3<Scalar> from = to + static_cast<Scalar>(1e4) * random.direction<Scalar>();
-            return hit_of(scene, Ray<Scalar>{from, unit<Scalar>(to - from), 0}, kNoPrimitive).primitive_id <
-                   scene.first_instanced;
-        };
-        if (std::same_as<Scalar, double> || round < 4) {
-            EXPECT_EQ(count_of(ray_count() / 8, 57, misses), 0) << shape.transform;
-        }
-    }
+    RandomInputs random(53);
+    expect_what_is_found_one_by_one(compile<TypeParam>(scene_of(triangle_soup(500, random))), 20'000);
 }
 
 /// By the determinant of Moeller and Trumbore, in long double.
