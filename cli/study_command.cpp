@@ -113,6 +113,8 @@ void add_study_command(CLI::App& app, int& status) {
     sub->add_option("--repeats", options.repeats, "Interleaved runs of each case (default: the study's)")
         ->check(CLI::Range(1, 1000));
     sub->add_option("--seed", command->seed, "Seed of all random numbers (default: 0)");
+    sub->add_option("--only", options.only,
+                    "A regular expression: only cases whose names in data.csv match it, a part of a long study");
     sub->add_flag("--quiet", command->is_quiet, "Print nothing");
     sub->callback([command, scene, &status] {
         command->options.is_scene_given = scene->count() > 0;

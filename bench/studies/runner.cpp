@@ -4,6 +4,7 @@
 #include <ctime>
 #include <fstream>
 #include <numeric>
+#include <regex>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -49,10 +50,25 @@ json identity(const Study& study, const StudyOptions& options, const std::vector
                {"depth", options.depth},     {"threads", options.threads},
                {"repeats", options.repeats}, {"seed", options.seed}};
     if (options.is_scene_given) asked["scene_given"] = true;
+    if (!options.only.empty()) asked["only"] = valid_utf8(options.only);
     json described = json::array();
     for (const Column& column : columns) described.push_back({{"name", column.name}, {"what", column.what}});
     return {{"study", study.name}, {"question", study.question}, {"options", asked},
             {"plan", plan},        {"columns", described},       {"environment", environment_json()}};
+}
+
+std::vector<Case> asked_cases(const Study& study, const StudyOptions& options) {
+    std::vector<Case> cases = study.cases(options);
+    if (options.only.empty()) return cases;
+    try {
+        const std::regex pattern(options.only);
+        std::erase_if(cases, [&](const Case& c) { return !std::regex_search(c.id, pattern); });
+    } catch (const std::regex_error& error) {
+        throw InputError(fmt::format("--only: '{}' is no regular expression: {}", options.only, error.what()));
+    }
+    if (cases.empty())
+        throw InputError(fmt::format("--only: study {} has no case like '{}'", study.name, options.only));
+    return cases;
 }
 
 void check_same(const json& found, const json& wanted, const std::string& key, const fs::path& folder) {
@@ -95,7 +111,7 @@ std::vector<std::size_t> turn_order(std::size_t count, std::size_t turn) {
 
 std::int64_t run_count(const Study& study, const StudyOptions& options) {
     std::int64_t count = 0;
-    for (const Case& c : study.cases(options)) count += c.repeats;
+    for (const Case& c : asked_cases(study, options)) count += c.repeats;
     return count;
 }
 
@@ -105,7 +121,7 @@ FileLock lock_folder(const fs::path& folder) {
 }
 
 bool run_study(const Study& study, const StudyOptions& options, const fs::path& folder, const RunControl& control) {
-    const std::vector<Case> cases = study.cases(options);
+    const std::vector<Case> cases = asked_cases(study, options);
     const std::vector<Column> columns = all_columns(study);
     json run = identity(study, options, cases, columns);
 

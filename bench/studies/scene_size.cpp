@@ -191,6 +191,10 @@ Rows list_rows(const SizedRender& render) {
     return rows;
 }
 
+/// A kind of mesh that is not asked how many records a pool must hold.
+bool is_plain_mesh(const std::string& kind) {
+    return is_mesh(kind) && kind != kMeshKinds[0];
+}
 std::vector<std::string> kinds(bool is_quick) {
     std::vector<std::string> all(std::begin(kStrewnKinds), std::end(kStrewnKinds));
     all.insert(all.end(), std::begin(kMeshKinds), is_quick ? std::begin(kMeshKinds) + 1 : std::end(kMeshKinds));
@@ -198,17 +202,19 @@ std::vector<std::string> kinds(bool is_quick) {
 }
 std::vector<std::int64_t> sizes(const std::string& kind, bool is_quick) {
     if (is_quick) return {100, 1000, 10'000};
-    std::vector<std::int64_t> all{100, 1000, 10'000, 100'000, 1'000'000};
-    if (is_mesh(kind)) all.push_back(10'000'000);
+    std::vector<std::int64_t> all{1000, 10'000, 100'000, 1'000'000};
+    if (!is_mesh(kind)) all.insert(all.begin(), 100);
+    if (is_mesh(kind) && !is_plain_mesh(kind)) all.insert(all.end(), {5'000'000, 10'000'000});
     return all;
 }
-std::vector<std::int64_t> depths(const StudyOptions& options) {
+std::vector<std::int64_t> depths(const std::string& kind, const StudyOptions& options) {
     if (options.depth != 0) return {options.depth};
-    if (options.is_quick) return {50};
+    if (options.is_quick || is_mesh(kind)) return {50};
     return {1, 50};
 }
-std::vector<SizedWay> sized_ways(bool is_quick) {
+std::vector<SizedWay> sized_ways(const std::string& kind, std::int64_t shapes, bool is_quick) {
     std::vector<SizedWay> ways{{kRecursion, std::nullopt}, {kAutomatic, PoolSettings{}}};
+    if (is_plain_mesh(kind) || shapes > 1'000'000) return ways;
     for (const std::int64_t capacity : {2048, 8192, 32'768, 131'072}) {
         if (is_quick && capacity > 32'768) continue;
         PoolSettings pool;
@@ -225,7 +231,6 @@ std::vector<Case> scene_size_cases(const StudyOptions& options) {
     const Plan plan = plan_of(options, {4, 8}, {3, 5}, options.is_quick ? 1 : core_count());
     RenderSettings settings = with_way(plan.settings, {"", "tile:8", "dynamic"});
     const std::int64_t width = choose(options, options.width, {96, 256});
-    const std::vector<SizedWay> ways = sized_ways(options.is_quick);
     const bool has_counters = count_by_hardware([] {}).has_value();
     const bool has_cachegrind = !has_counters && !options.is_quick && cachegrind_command().why.empty();
 
@@ -234,8 +239,9 @@ std::vector<Case> scene_size_cases(const StudyOptions& options) {
         // The rooms around meshes have a lamp, which would hardly be met by chance.
         settings.light_sampling = is_mesh(kind) ? LightSampling::Mis : LightSampling::None;
         for (const std::int64_t shapes : sizes(kind, options.is_quick)) {
+            const std::vector<SizedWay> ways = sized_ways(kind, shapes, options.is_quick);
             const auto scene = std::make_shared<SizedScene>(kind, shapes, width);
-            for (const std::int64_t depth : depths(options)) {
+            for (const std::int64_t depth : depths(kind, options)) {
                 settings.depth = static_cast<std::int32_t>(depth);
                 for (const int threads : one_and_all(plan.most_threads)) {
                     settings.threads = threads;
@@ -246,7 +252,7 @@ std::vector<Case> scene_size_cases(const StudyOptions& options) {
                 settings.threads = 1;
 #ifdef RAYPOOL_HAS_EMBREE
                 // Their trees are built for each render, which takes longer than it.
-                if (is_mesh(kind) && kind != kInstances && depth == depths(options).back())
+                if (is_mesh(kind) && kind != kInstances && depth == depths(kind, options).back())
                     add_peers(cases, scene, settings, plan.repeats);
 #endif
                 for (const SizedWay& way : ways) {
@@ -258,7 +264,7 @@ std::vector<Case> scene_size_cases(const StudyOptions& options) {
                         cases.push_back(sized_case("lists of " + way.name, render, 1, list_rows));
                 }
             }
-            if (!has_cachegrind || shapes > kMostSimulated) continue;
+            if (!has_cachegrind || shapes > kMostSimulated || is_plain_mesh(kind)) continue;
             const auto small = std::make_shared<SizedScene>(kind, shapes, std::min(width, kSimulatedWidth));
             RenderSettings few = settings;
             few.end_sample = kSimulatedSpp;

@@ -27,6 +27,7 @@ struct StudyOptions {
     int threads = 0;  ///< the most threads that are run, or whose load is counted
     int repeats = 0;
     std::uint64_t seed = 0;
+    std::string only;  ///< a regular expression (ECMAScript): cases whose id has no match are left out; empty: none is
     std::filesystem::path folder;  ///< of the run, for what is dear to make; empty: nothing is to be kept
 };
 

@@ -18,22 +18,44 @@ def timed(rows):
     return [row for row in rows if not row["way"].startswith((COUNTED, "lists, "))]
 
 
+def grid(count, below=1):
+    """A figure with `count` panels, up to three a row, each of `below` axes under one another: (axes, ...) a panel."""
+    across = min(count, 3)
+    down = -(-count // across)
+    figure, axes = plt.subplots(below * down, across, figsize=(4.4 * across + 2.6, 3.6 * below * down + 0.8), sharex=True,
+                                squeeze=False)
+    for axis in axes.flat:
+        axis.tick_params(labelbottom=True)
+    panels = [axes[below * row:below * (row + 1), column] for row in range(down) for column in range(across)]
+    for panel in panels[count:]:
+        for axis in panel:
+            axis.set_visible(False)
+    return figure, panels[:count]
+
+
+def add_legend(figure):
+    """One for all panels, in the order in which its lines are first drawn."""
+    named = {}
+    for axis in figure.axes:
+        for handle, label in zip(*axis.get_legend_handles_labels()):
+            named.setdefault(label, handle)
+    last = figure.axes[min(2, len(figure.axes) - 1)]
+    last.legend(named.values(), named.keys(), loc="upper left", bbox_to_anchor=(1, 1))
+
+
 def panels(rows, label):
-    """A panel for each kind, in a row for each depth; of the most threads."""
+    """A panel for each depth and kind; of the most threads."""
     threads = max(distinct(rows, "threads"))
     rows = where(timed(rows), threads=threads)
-    kinds, depths = distinct(rows, "kind"), distinct(rows, "depth")
-    figure, axes = plt.subplots(len(depths), len(kinds), figsize=(4.2 * len(kinds) + 1.8, 3.9 * len(depths) + 0.8),
-                                sharex=True, sharey="row", squeeze=False)
-    for across, depth in zip(axes, depths):
-        for axis, kind in zip(across, kinds):
-            axis.set_xscale("log")
-            axis.set_title(f"{kind}, depth {depth:.0f}, {threads:.0f} thread{'s' if threads > 1 else ''}")
-            yield figure, axis, where(rows, depth=depth, kind=kind)
-        across[0].set_ylabel(label)
-        across[-1].legend(loc="upper left", bbox_to_anchor=(1, 1))
-    for axis in axes[-1]:
+    places = sorted(distinct(rows, "depth", "kind"), key=lambda place: place[0])
+    figure, found = grid(len(places))
+    for (axis,), (depth, kind) in zip(found, places):
+        axis.set_xscale("log")
+        axis.set_title(f"{kind}, depth {depth:.0f}, {threads_text(threads)}")
+        axis.set_ylabel(label)
         axis.set_xlabel("shapes")
+        yield figure, axis, where(rows, depth=depth, kind=kind)
+    add_legend(figure)
 
 
 def way_ratio(here, way, to="recursion", **more):
@@ -45,13 +67,15 @@ def ratio(run, rows):
     for figure, axis, here in panels(rows, "times as fast as recursion"):
         sizes = distinct(here, "shapes")
         for index, capacity in enumerate(capacities(here)):
-            line(axis, sizes, [way_ratio(here, str(capacity), shapes=size) for size in sizes], index=index,
+            of_capacity = distinct(where(here, way=str(capacity)), "shapes")
+            line(axis, of_capacity, [way_ratio(here, str(capacity), shapes=size) for size in of_capacity], index=index,
                  label=f"{capacity} records", linestyle="--")
         line(axis, sizes, [way_ratio(here, "automatic", shapes=size) for size in sizes], color=BLACK, marker="*",
              label="automatic")
         axis.axhline(1, color="black", linewidth=2, label="recursion")
-    for axis in figure.axes:  # after the last panel, since rows share an axis that stops growing here
-        axis.set_ylim(bottom=0)
+    top = max(axis.get_ylim()[1] for axis in figure.axes if axis.get_visible())
+    for axis in figure.axes:
+        axis.set_ylim(0, top)
     return figure
 
 
@@ -72,11 +96,12 @@ SHORT_LIST = 12  # rays; kShortList of wavefront/stream.h
 def lists(run, rows):
     rows = where(rows, way=AUTOMATIC_LISTS)
     kinds = distinct(rows, "kind")
-    figure, axes = plt.subplots(2, len(kinds), figsize=(4.2 * len(kinds) + 1.8, 7.0), sharex=True, sharey="row",
-                                squeeze=False)
-    for above, below, kind in zip(axes[0], axes[1], kinds):
-        for index, shapes in enumerate(distinct(where(rows, kind=kind), "shapes")):
+    sizes = sorted(distinct(rows, "shapes"))
+    figure, found = grid(len(kinds), below=2)
+    for (above, below), kind in zip(found, kinds):
+        for shapes in distinct(where(rows, kind=kind), "shapes"):
             here = where(rows, kind=kind, shapes=shapes)
+            index = sizes.index(shapes)
             lengths = [row["list_rays"] / row["lists"] for row in here]
             line(above, [row["level"] for row in here], [(value, value, value) for value in lengths], index=index,
                  label=f"{shapes:.0f} shapes")
@@ -88,9 +113,9 @@ def lists(run, rows):
         above.set_title(kind)
         below.set_ylim(0, 1.05)
         below.set_xlabel("level of the trees")
-    axes[0][0].set_ylabel("rays of a list")
-    axes[1][0].set_ylabel("lanes in use")
-    axes[0][-1].legend(loc="upper left", bbox_to_anchor=(1, 1))
+        above.set_ylabel("rays of a list")
+        below.set_ylabel("lanes in use")
+    add_legend(figure)
     return figure
 
 
@@ -100,7 +125,7 @@ def capacities(rows):
 
 
 def places(rows, threads, depth):
-    """(name, rows) of each scene."""
+    """(name, rows) of each scene that was rendered so."""
     for kind in distinct(where(rows, threads=threads, depth=depth), "kind"):
         of_kind = where(rows, threads=threads, depth=depth, kind=kind)
         for shapes in distinct(of_kind, "shapes"):
@@ -108,19 +133,19 @@ def places(rows, threads, depth):
 
 
 def ratio_table(rows, threads, depth):
+    sizes = capacities(where(rows, threads=threads, depth=depth))
     table = Table(f"Ratio to recursion, {threads_text(threads)}, depth {depth}",
-                  ["scene", "trees, MB", "recursion, ns a ray"])
+                  ["scene", "trees, MB", "recursion, ns a ray", *map(str, sizes), "automatic", "its records", "best",
+                   "beats recursion from"])
     for scene, here in places(rows, threads, depth):
-        measured = [AtCapacity(size, way_ratio(here, str(size))) for size in capacities(here)]
-        if not table.rows:
-            table.header += [*(str(at.capacity) for at in measured), "automatic", "its records", "best",
-                             "beats recursion from"]
+        measured = {size: way_ratio(here, str(size)) for size in capacities(here)}
+        ordered = [AtCapacity(*item) for item in measured.items()]
         recursion = where(here, way="recursion")
         table.rows.append([scene, f"{1e-6 * recursion[0]['tree_bytes']:.2f}",
                            f"{statistics.median(numbers(recursion, 'ns_per_segment')):.0f}",
-                           *(text(at.ratio) for at in measured), text(way_ratio(here, "automatic")),
-                           str(where(here, way="automatic")[0]["capacity"]), str(best(measured).capacity),
-                           str(crossover(measured))])
+                           *(text(measured[size]) if size in measured else "" for size in sizes),
+                           text(way_ratio(here, "automatic")), str(where(here, way="automatic")[0]["capacity"]),
+                           *([str(best(ordered).capacity), str(crossover(ordered))] if ordered else ["", ""])])
     return table
 
 
@@ -202,14 +227,17 @@ def summarise(run, rows):
                 "and that small pools lead in small scenes and large ones in large scenes."),
         Picture("time", "What a ray costs as the scene grows",
                 "Nanoseconds of a thread for each ray, by the number of shapes: recursion, and the pool of automatic "
-                "capacity. What to see: where the lines bend upward, the trees have outgrown a cache."),
-        Picture("lists", "How long the lists of rays are on the way down",
-                "Above, rays of a list by the level of the trees, a line for each number of shapes, of the pool of automatic "
-                "capacity; below, how full the registers are that take them. Grey: shorter lists are taken apart, and their "
-                "rays go on alone. What to see: how far down a pool's rays share nodes, and that registers stay full there.")]
+                "capacity. What to see: where the lines bend upward, the trees have outgrown a cache.")]
+    if where(rows, way=AUTOMATIC_LISTS):
+        summary.pictures.append(Picture(
+            "lists", "How long the lists of rays are on the way down",
+            "Above, rays of a list by the level of the trees, a line for each number of shapes, of the pool of automatic "
+            "capacity; below, how full the registers are that take them. Grey: shorter lists are taken apart, and their rays "
+            "go on alone. What to see: how far down a pool's rays share nodes, and that registers stay full there."))
     summary.notes.append(
-        "Scenes are made by scenes/generate. A ray across the shapes meets two of them whatever their number, so paths "
-        "are equally long in all of them. Making the pool is part of the time. The best capacity is that of the "
+        "Spheres, quads and clusters are made by scenes/generate: a ray across the shapes meets two of them whatever "
+        "their number, so paths are equally long. Meshes are made by scenes/generate_mesh and stand in a room under a "
+        "lamp that is sampled. Making the pool is part of the time. The best capacity is that of the "
         "highest median, and need not differ from its neighbours. Cache misses are counted where the processor lets "
         "us, elsewhere simulated: 32 KiB and 1 MiB, in smaller images, with up to 10^5 shapes. Camera rays are in no "
         "list: they go down in beams.")

@@ -104,6 +104,16 @@ class StudyTest(CommandTest):
         plan = json.loads((data.parent / "run.json").read_text())["plan"]
         self.assertEqual(len(keys), sum(case["repeats"] for case in plan))
 
+    def test_only_some_cases(self):
+        only = ["study", "scene-size", *TINY, "--threads", 1]
+        self.run_well(*only, "--only", "^100 (quads|field), .*: (recursion|automatic), ", "--quiet")
+        run = self.check_folder(self.folder / "out/scene-size")
+        cases = [f"100 {kind}, depth 50: {way}, 1 threads" for kind in ("quads", "field") for way in ("recursion", "automatic")]
+        self.assertEqual(sorted(row["case"] for row in rows_of(self.folder / "out/scene-size")), sorted(cases))
+        self.assertEqual(len(run["plan"]), 4)
+        self.assert_refused(*only, "--only", "200 cubes", named=["--only", "scene-size", "200 cubes"])
+        self.assert_refused(*only, "--only", "(", named=["--only", "'('", "regular expression"])
+
     def test_another_run_in_the_folder_is_refused(self):
         self.run_well("study", "schedules", *TINY, "--quiet")
         self.assert_refused("study", "schedules", *TINY, "--seed", "1", named=["out/schedules", "options", "--fresh"])
