@@ -132,7 +132,7 @@ bool same_bits(const T* a, const T* b, std::size_t count) {
 
 /// Whether the first `count` records have the same bits.
 inline bool same_records(const Records& a, const Records& b, std::size_t count) {
-    using Record = wavefront::RayRecord<float>;
+    using Record = RayRecord<float>;
     static_assert(sizeof(Record) == sizeof(Ray<float>) + sizeof(Vec3<float>) + 5 * sizeof(float), "no gaps between");
     for (std::size_t i = 0; i < count; ++i) {
         const Record records[] = {a.load<float>(i), b.load<float>(i)};

@@ -4,7 +4,7 @@
 #include "core/base/error.h"
 #include "core/scene/scene_reader.h"
 #include "core/shading/compiled_scene.h"
-#include "wavefront/ray_record.h"
+#include "wavefront/ray_columns.h"
 
 namespace raypool {
 

@@ -64,7 +64,7 @@ void shade(benchmark::State& state, Loop loop, const RayKind& kind, std::size_t 
         benchmark::ClobberMemory();
     }
     constexpr std::size_t kHitAndResults = (2 + ShadeColumns::kResults) * sizeof(float);
-    count_rays(state, static_cast<std::int64_t>(count), wavefront::record_bytes<kPaper, float>() + kHitAndResults);
+    count_rays(state, static_cast<std::int64_t>(count), record_bytes<kPaper, float>() + kHitAndResults);
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ RAYPOOL_INLINE void shade_at(const CompiledScene<float>& scene, const RandomSeed
     Int<Real> primitive_id;
     load(distance, columns.distance + i);
     load(primitive_id, columns.primitive_id + i);
-    const wavefront::RayRecord<Real> record = columns.rays->load<Real>(i);
+    const RayRecord<Real> record = columns.rays->load<Real>(i);
     const Scattered<Real> out = scatter<kPaper, Real>(scene, record.ray, distance, primitive_id, record.throughput,
                                                       record.key, record.step, seed);
     float* to = columns.results + i;

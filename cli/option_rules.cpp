@@ -33,7 +33,11 @@ constexpr std::string_view kListsOnly = "the studies are only listed then";
 
 constexpr OptionRule kRules[] = {
     {"render", "--pool-scope", Rule::Needs, "--engine", "wavefront", ""},
-    {"render", "--pool-rays", Rule::Needs, "--engine", "wavefront", ""},
+    {"render", "--pool-rays", Rule::Excludes, "--engine", "recursive", "it has no pool"},
+    {"render", "--pool-rays", Rule::Excludes, "--engine", "iterative", "it has no pool"},
+    {"render", "--pool-rays", Rule::Excludes, "--gpu-form", "mega", "it has no pool"},
+    {"render", "--pool-rays", Rule::Excludes, "--gpu-form", "mega-regenerate", "it has no pool"},
+    {"render", "--gpu-form", Rule::Needs, "--engine", "gpu", ""},
     {"render", "--pool-batch", Rule::Needs, "--engine", "wavefront", ""},
     {"render", "--refill", Rule::Needs, "--engine", "wavefront", ""},
     {"render", "--stage-width", Rule::Needs, "--engine", "wavefront", ""},

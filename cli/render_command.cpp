@@ -153,8 +153,9 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     check_memory(scene, options, ranks);
     CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;
-    record.pool = pool_settings(options.pool, stored_record_bytes(scene, record.settings, record.precision),
-                                record.settings.threads);
+    const std::size_t record_bytes = stored_record_bytes(scene, record.settings, record.precision);
+    record.pool = pool_settings(options.pool, record_bytes, record.settings.threads);
+    record.gpu = gpu_settings(options, record_bytes);
     if (!options.checkpoint.file.empty() && engines().find(record.engine).has_pool &&
         adds_reals(record.pool.accumulator))
         throw InputError("--accumulator: atomic-float and atomic-double have no exact sums to keep in a --checkpoint");

@@ -21,7 +21,7 @@ namespace raypool::cli {
 namespace {
 
 std::unique_ptr<Engine> make_engine(const RenderRecord& record, cluster::Ranks& ranks) {
-    std::unique_ptr<Engine> own = engines().find(record.engine).make(record.pool);
+    std::unique_ptr<Engine> own = engines().find(record.engine).make(engine_options(record));
     return ranks.count() == 1 ? std::move(own) : std::make_unique<cluster::RankEngine>(std::move(own), ranks);
 }
 

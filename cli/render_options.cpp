@@ -1,5 +1,8 @@
 #include "cli/render_options.h"
 
+#include <algorithm>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "cli/engines.h"
@@ -28,6 +31,11 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     command.add_option("--precision", options.precision, "Numbers of the kernels (default: float)")
         ->check(CLI::IsMember({"float", "double"}));
     add_pool_options(command, options.pool);
+    command
+        .add_option("--gpu-form", options.gpu_form,
+                    "A thread a path, threads that take the next path, or a pool in the GPU's memory (default: wave)")
+        ->check(CLI::IsMember(std::vector<std::string>(gpu::kFormNames.begin(), gpu::kFormNames.end())))
+        ->group("GPU engine");
     command.add_flag("--count-work", options.count_work, "Count box and primitive tests (slower)");
     command
         .add_option("--checkpoint", options.checkpoint.file,
@@ -67,6 +75,14 @@ RenderSettings render_settings(const RenderOptions& options) {
         settings.schedule = chosen_schedule(options.schedule, options.grain);
     settings.count_work = options.count_work || (!options.cost_image.empty() && cost_of(options.cost) == Cost::Tests);
     settings.log_rounds = options.count_work;
+    return settings;
+}
+
+gpu::GpuSettings gpu_settings(const RenderOptions& options, std::size_t record_bytes) {
+    gpu::GpuSettings settings;
+    const auto form = std::find(gpu::kFormNames.begin(), gpu::kFormNames.end(), options.gpu_form);
+    if (form != gpu::kFormNames.end()) settings.form = static_cast<gpu::Form>(form - gpu::kFormNames.begin());
+    if (!options.pool.rays.empty()) settings.capacity = parse_pool_rays(options.pool.rays, record_bytes);
     return settings;
 }
 

@@ -10,6 +10,7 @@
 #include "cli/checkpoint_keeper.h"
 #include "cli/common_options.h"
 #include "cli/pool_options.h"
+#include "gpu/settings.h"
 #include "core/image/cost_image.h"
 #include "core/runtime/settings.h"
 
@@ -31,6 +32,7 @@ struct RenderOptions : CommonOptions {
     bool is_quiet = false;
     CheckpointOptions checkpoint;
     PoolOptions pool;
+    std::string gpu_form;  ///< empty: the default
 };
 
 void add_render_options(CLI::App& command, RenderOptions& options);
@@ -40,5 +42,8 @@ Cost cost_of(const std::string& word);
 
 /// Refuses (InputError) texts that make no sense. Trace and cost image are still to be set.
 RenderSettings render_settings(const RenderOptions& options);
+
+/// Of the GPU engine, for records of `record_bytes`.
+gpu::GpuSettings gpu_settings(const RenderOptions& options, std::size_t record_bytes);
 
 }  // namespace raypool::cli

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include "cli/print.h"
+#include "core/base/memory.h"
 #include "core/film/light_range.h"
 #include "core/runtime/trace.h"
+#include "gpu/engine.h"
 #include "wavefront/pool_report.h"
 
 namespace raypool::cli {
@@ -71,7 +73,8 @@ void print_summary(const RenderRecord& record) {
           settings.seed, record.precision == Precision::Float ? "float" : "double");
     const std::string ranks = record.ranks.empty() ? "" : fmt::format("{} ranks of ", record.ranks.size());
     print("{} engine: {}{} thread{}, {}\n", record.engine, ranks, settings.threads, settings.threads == 1 ? "" : "s",
-          !loops_over_image(record) ? "one pool for all"
+          record.engine == "gpu"      ? gpu::kFormNames[static_cast<std::size_t>(record.gpu.form)]
+          : !loops_over_image(record) ? "one pool for all"
           : has_grain(settings.schedule)
               ? fmt::format("grain {}, schedule {}", to_string(settings.grain), to_string(settings.schedule))
               : fmt::format("schedule {}", to_string(settings.schedule)));
@@ -80,6 +83,11 @@ void print_summary(const RenderRecord& record) {
     if (const wavefront::PoolReport& pool = wavefront::pool_report(report); pool.pool_rays > 0)
         print("ray record of {} bytes; pools of {} records, at most {:.2f} MB\n", pool.record_bytes, pool.pool_rays,
               static_cast<double>(report.memory_bytes) / (1024 * 1024));
+    if (const gpu::GpuReport& gpu = gpu::gpu_report(report); !gpu.device.empty())
+        print(
+            "{}: {} in {:.3f} s of kernels, {} of its memory\n", gpu.device,
+            gpu.capacity == 0 ? "paths" : fmt::format("{} rounds over a pool of {} records", gpu.rounds, gpu.capacity),
+            gpu.kernel_s, bytes_text(report.memory_bytes));
     if (record.truncation_bound > 0)
         print("depth {} cuts off a radiance of at most {:.3g} a pixel\n", settings.depth, record.truncation_bound);
     print_step(record);

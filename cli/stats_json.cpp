@@ -7,14 +7,20 @@
 #include "cli/engines.h"
 #include "cli/pool_options.h"
 #include "core/runtime/environment.h"
+#include "gpu/engine.h"
 #include "wavefront/pool_report.h"
 
 namespace raypool::cli {
 
 using nlohmann::json;
 
+std::any engine_options(const RenderRecord& record) {
+    if (engines().find(record.engine).has_pool) return record.pool;
+    return record.gpu;
+}
+
 bool loops_over_image(const RenderRecord& record) {
-    return !engines().find(record.engine).has_pool || wavefront::loops_over_image(record.pool);
+    return engines().find(record.engine).make(engine_options(record))->loops_over_image();
 }
 
 bool misses_target(const RenderRecord& record) {
@@ -44,6 +50,9 @@ json settings_json(const RenderRecord& record) {
     }
     if (record.target_error > 0) result["target_error"] = record.target_error;
     if (engines().find(record.engine).has_pool) result["pool"] = to_json(record.pool);
+    if (record.engine == "gpu")
+        result["gpu"] = {{"form", gpu::kFormNames[static_cast<std::size_t>(record.gpu.form)]},
+                         {"rays", record.gpu.capacity}};
     return result;
 }
 
@@ -132,6 +141,11 @@ json stats_json(const RenderRecord& record) {
                                   {"segments", rank.segments()},
                                   {"busy_s", busy_s}});
     }
+    if (const gpu::GpuReport& device = gpu::gpu_report(report); !device.device.empty())
+        stats["gpu"] = {{"device", device.device},
+                        {"kernel_s", device.kernel_s},
+                        {"rounds", device.rounds},
+                        {"bytes", report.memory_bytes}};
     if (engines().find(record.engine).has_pool) {
         stats["record_bytes"] = pool.record_bytes;
         stats["pool_rays"] = pool.pool_rays;

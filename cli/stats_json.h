@@ -1,6 +1,7 @@
 /// The JSON that `--stats` writes, and what the render command knows to put into it.
 #pragma once
 
+#include <any>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,6 +9,7 @@
 #include "cli/options.h"
 #include "core/runtime/adaptive.h"
 #include "core/runtime/engine.h"
+#include "gpu/settings.h"
 #include "wavefront/settings.h"
 
 namespace raypool::cli {
@@ -23,6 +25,7 @@ struct RenderRecord {
     std::string engine;
     RenderSettings settings;
     wavefront::PoolSettings pool;     ///< of the wavefront engine
+    gpu::GpuSettings gpu;             ///< of the GPU engine
     RenderReport report;              ///< of all ranks
     std::vector<RenderReport> ranks;  ///< of each, where there are several
     double target_error = 0;          ///< 0: every pixel has the same number of samples
@@ -38,6 +41,9 @@ struct RenderRecord {
     double write_s = 0;             ///< sums to image file
     double total_s = 0;
 };
+
+/// The settings of its own that the engine takes.
+std::any engine_options(const RenderRecord& record);
 
 /// Whether the engine hands out parts of the image, so that the schedule has an effect.
 bool loops_over_image(const RenderRecord& record);

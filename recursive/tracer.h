@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/geometry/occlusion.h"
+#include "core/geometry/any_hit.h"
 #include "core/geometry/traverse.h"
 #include "core/runtime/engine.h"
 #include "core/shading/shade.h"

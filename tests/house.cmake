@@ -16,13 +16,6 @@ foreach(name build crossover efficiency page results scene_size traversal)
   set_tests_properties(analysis_${name} PROPERTIES LABELS unit)
 endforeach()
 
-find_program(RAYPOOL_NVCC nvcc HINTS /usr/local/cuda/bin)  # without it, nothing here is for a GPU
-if(RAYPOOL_NVCC)
-  add_test(NAME device_kernels
-           COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/device/kernels_test.py ${RAYPOOL_NVCC} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(device_kernels PROPERTIES LABELS unit)
-endif()
-
 if(RAYPOOL_SANITIZE MATCHES thread)
   # Without Archer, ThreadSanitizer takes the barriers of OpenMP for races. libomp loads it by itself where it finds it.
   add_test(NAME archer COMMAND equivalence_test --gtest_filter=*HashMatrix*two_pixels*)

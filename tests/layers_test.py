@@ -12,7 +12,7 @@ SOURCE = pathlib.Path(sys.argv.pop(1))
 
 CORE = ["core/base", "core/math", "core/image", "core/scene", "core/geometry", "core/shading", "core/film",
         "core/runtime"]
-ENGINES = ["recursive", "wavefront"]
+ENGINES = ["recursive", "wavefront", "gpu"]
 BENCH = ["bench/naive", "bench/accuracy", "bench/peers", "bench/stability", "bench/studies", "bench"]
 
 # What a folder may include, beside itself.
@@ -28,7 +28,7 @@ ALLOWED["bench"] = {*CORE, *ENGINES}
 ALLOWED["cli"] = {*CORE, *ENGINES, "cluster", "bench/accuracy", "bench/peers", "bench/studies"}
 
 # Libraries that only these folders may include, so that no other needs them.
-LIBRARIES = {"png.h": {"core/image"}, "Imf": {"core/image"}, "mpi.h": {"cluster"}, "embree3/": {"bench/peers"},
+LIBRARIES = {"png.h": {"core/image"}, "Imf": {"core/image"}, "mpi.h": {"cluster"}, "embree3/": {"bench/peers"}, "cuda_runtime": {"gpu"},
              "CLI/": {"cli"}, "xxhash.h": {"core/base", "core/scene", "core/film", "bench/accuracy"},
              "boost/": {"core/image", "bench/accuracy"}}
 
@@ -44,7 +44,7 @@ def includes():
         if not top.is_dir() or top.name.startswith((".", "build")) or top.name == "tests":
             continue
         for path in sorted(top.rglob("*")):
-            if path.suffix not in (".h", ".cpp"):
+            if path.suffix not in (".h", ".cpp", ".cu"):
                 continue
             name = path.relative_to(SOURCE).as_posix()
             for included in re.findall(r'^\s*#\s*include\s+[<"]([^">]+)', path.read_text(), re.MULTILINE):

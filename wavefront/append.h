@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "wavefront/ray_record.h"
+#include "wavefront/ray_columns.h"
 #include "wavefront/settings.h"
 
 namespace raypool::wavefront {

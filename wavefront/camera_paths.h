@@ -13,7 +13,7 @@
 #include "core/math/path.h"
 #include "core/runtime/loop.h"
 #include "core/shading/camera.h"
-#include "wavefront/ray_record.h"
+#include "wavefront/ray_columns.h"
 
 namespace raypool::wavefront {
 

@@ -43,9 +43,10 @@ class EightContributions {
         if constexpr (x86::kRoundsEight && sizeof(Scalar) == sizeof(float)) {
             if (i % 8 == 0)
                 are_converted_ = i + 8 <= contributions_.count() &&
-                                 converter_.convert_eight({contributions_.channel(0, i), contributions_.channel(1, i),
-                                                           contributions_.channel(2, i)},
-                                                          fixed_);
+                                 convert_eight(converter_,
+                                               {contributions_.channel(0, i), contributions_.channel(1, i),
+                                                contributions_.channel(2, i)},
+                                               fixed_);
             if (are_converted_) return {fixed_[0][i % 8], fixed_[1][i % 8], fixed_[2][i % 8]};
         }
         return converter_.convert<Scalar>(contributions_.radiance(i));

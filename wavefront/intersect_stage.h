@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "wavefront/ray_record.h"
+#include "wavefront/ray_columns.h"
 #include "wavefront/stream.h"
 
 namespace raypool::wavefront {

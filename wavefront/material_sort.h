@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/shading/compiled_scene.h"
-#include "wavefront/ray_record.h"
+#include "wavefront/ray_columns.h"
 #include "wavefront/stream.h"
 
 namespace raypool::wavefront {

@@ -1,7 +1,7 @@
 /// A packet: one register of coherent rays (camera rays through neighbouring film points) walked down a tree together.
 #pragma once
 
-#include "wavefront/wide_rays.h"
+#include "wavefront/wide_ids.h"
 
 namespace raypool::wavefront {
 

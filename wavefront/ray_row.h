@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/geometry/occlusion.h"
-#include "wavefront/wide_rays.h"
+#include "wavefront/wide_ids.h"
 
 namespace raypool::wavefront {
 

@@ -14,10 +14,10 @@
 #include "core/runtime/loop.h"
 #include "core/shading/interaction.h"
 #include "wavefront/camera_paths.h"
-#include "wavefront/ray_record.h"
+#include "wavefront/ray_columns.h"
 #include "wavefront/round_log.h"
 #include "wavefront/settings.h"
-#include "wavefront/wide_rays.h"
+#include "wavefront/wide_ids.h"
 
 namespace raypool::wavefront {
 

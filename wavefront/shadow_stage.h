@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/geometry/occlusion.h"
+#include "core/geometry/any_hit.h"
 #include "core/shading/shade.h"
 #include "wavefront/contributions.h"
-#include "wavefront/ray_record.h"
+#include "wavefront/ray_columns.h"
 #include "wavefront/stream.h"
 
 namespace raypool::wavefront {

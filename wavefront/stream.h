@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/geometry/any_hit.h"
 #include "wavefront/settings.h"
 #include "wavefront/sphere_pairs.h"
 #include "wavefront/stream_lists.h"

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "wavefront/ray_row.h"
-#include "wavefront/wide_rays.h"
+#include "wavefront/wide_ids.h"
 
 namespace raypool::wavefront::detail {
 

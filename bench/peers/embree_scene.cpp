@@ -29,7 +29,7 @@ Alone shape_alone(const Block& block, int lane) {
 template <class Block, class Blocks>
 void add(const Blocks& blocks, Shapes<Block>& shapes) {
     for (const auto& block : blocks)
-        wavefront::for_each_shape(block, [&](int lane) { shapes.blocks.push_back(shape_alone<Block>(block, lane)); });
+        for_each_shape(block, [&](int lane) { shapes.blocks.push_back(shape_alone<Block>(block, lane)); });
 }
 
 /// A shape's own padded box at times 0 and 1.
@@ -121,7 +121,7 @@ void EmbreeScene::attach_triangles(const CompiledScene<float>& scene, RTCSceneFl
     rtcSetSceneFlags(scene_.get(), flags);
     vertex_ids_.resize(scene.triangles.size());
     for (const auto& block : scene.triangle_tree.blocks) {
-        wavefront::for_each_shape(block, [&](int lane) {
+        for_each_shape(block, [&](int lane) {
             const auto number = static_cast<std::size_t>(block.id[lane] - first_triangle_);
             for (std::size_t i = 0; i < 3; ++i)
                 vertex_ids_[number][i] = std::bit_cast<std::uint32_t>(scene.triangles[number].value[i]);

@@ -12,9 +12,9 @@
 
 #include "bench/peers/embree_calls.h"
 #include "bench/peers/embree_device.h"
-#include "core/geometry/occlusion.h"
+#include "core/geometry/any_hit.h"
+#include "core/geometry/wide_rays.h"
 #include "core/shading/compiled_scene.h"
-#include "wavefront/wide_rays.h"
 
 namespace raypool::peers {
 
@@ -29,7 +29,7 @@ enum class EmbreeTriangles : bool {
 template <class Real>
 struct Query {
     RTCIntersectContext context;
-    wavefront::WideRays<Real> rays;
+    WideRays<Real> rays;
     Hit<Real> light{};                                                       ///< of shadow rays: what they are to reach
     RTCIntersectContextFlags flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;  ///< how Embree walks with packets
 };
@@ -89,9 +89,9 @@ struct ShapeFunctions {
             const Int<Real> valid(args->valid, stdx::element_aligned);
             hit.t = select(as_mask<Real>(valid != Int<Real>(0)), t, Real(0));
         }
-        const Mask<Real> is_closer = wavefront::intersect_lane<features, InBox::Yes, Real>(
+        const Mask<Real> is_closer = intersect_lane<features, InBox::Yes, Real>(
             static_cast<const Shapes<Block>*>(args->geometryUserPtr)->blocks[args->primID], 0,
-            wavefront::ready_for<Block, Real>(reinterpret_cast<const Query<Real>*>(args->context)->rays), hit);
+            ready_for<Block, Real>(reinterpret_cast<const Query<Real>*>(args->context)->rays), hit);
         if (none(is_closer)) return;
         set(rayhit.ray.tfar, select(is_closer, hit.t, t));
         set(rayhit.hit.primID, hit.primitive_id);
@@ -111,9 +111,9 @@ struct ShapeFunctions {
             const Int<Real> valid(args->valid, stdx::element_aligned);
             hit.t = select(as_mask<Real>(valid != Int<Real>(0)), hit.t, Real(0));
         }
-        const Mask<Real> is_before = wavefront::intersect_lane<features, InBox::Yes, Real>(
-                                         shape, 0, wavefront::ready_for<Block, Real>(query.rays), hit) &&
-                                     as_mask<Real>(query.light.primitive_id != Int<Real>(shape.id[0]));
+        const Mask<Real> is_before =
+            intersect_lane<features, InBox::Yes, Real>(shape, 0, ready_for<Block, Real>(query.rays), hit) &&
+            as_mask<Real>(query.light.primitive_id != Int<Real>(shape.id[0]));
         if (none(is_before)) return;
         set(ray.tfar, select(is_before, Real(-kInfinity<float>), get<Real>(ray.tfar)));
     }
@@ -228,11 +228,9 @@ RAYPOOL_INLINE Mask<Packet> are_occluded(const EmbreeScene& embree, const SceneV
                                          const Hit<Packet>& light, const Mask<Packet>& is_active) {
     Query<Packet> query{{}, {ray, ray_inverse<Packet>(ray.direction), leaving_id}, light};
     NoTestCount work;
-    Mask<Packet> is_hidden =
-        wavefront::hidden_by_any<features>(scene.large_spheres, query.rays, kLanes<Packet>, light, work);
+    Mask<Packet> is_hidden = hidden_by_any<features>(scene.large_spheres, query.rays, kLanes<Packet>, light, work);
     if constexpr (features.planar)
-        is_hidden =
-            is_hidden || wavefront::hidden_by_any<features>(scene.planes, query.rays, kLanes<Packet>, light, work);
+        is_hidden = is_hidden || hidden_by_any<features>(scene.planes, query.rays, kLanes<Packet>, light, work);
     return is_hidden ||
            embree.occluded<Packet>(query, select(is_active && !is_hidden, Int<Packet>(-1), Int<Packet>(0)));
 }
@@ -247,9 +245,8 @@ RAYPOOL_INLINE Hit<Packet> closest_hits(const EmbreeScene& embree, const SceneVi
     Query<Packet> query{{}, {ray, ray_inverse<Packet>(ray.direction), leaving_id}, {}, flags};
     Hit<Packet> hit;
     NoTestCount work;
-    wavefront::intersect_all<features>(scene.large_spheres, query.rays, kLanes<Packet>, hit, work);
-    if constexpr (features.planar)
-        wavefront::intersect_all<features>(scene.planes, query.rays, kLanes<Packet>, hit, work);
+    intersect_all<features>(scene.large_spheres, query.rays, kLanes<Packet>, hit, work);
+    if constexpr (features.planar) intersect_all<features>(scene.planes, query.rays, kLanes<Packet>, hit, work);
     return embree.closest<Packet>(query, hit, select(is_active, Int<Packet>(-1), Int<Packet>(0)));
 }
 

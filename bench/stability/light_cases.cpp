@@ -9,7 +9,7 @@
 #include "bench/naive/spheres.h"
 #include "bench/stability/case.h"
 #include "bench/stability/rays.h"
-#include "core/geometry/occlusion.h"
+#include "core/geometry/any_hit.h"
 #include "core/shading/lights.h"
 
 namespace raypool::stability {

@@ -8,7 +8,7 @@
 #include "bench/naive/checkers.h"
 #include "bench/naive/spheres.h"
 #include "bench/stability/failures.h"
-#include "core/geometry/occlusion.h"
+#include "core/geometry/any_hit.h"
 #include "core/shading/shade.h"
 #include "recursive/engine.h"
 

@@ -6,14 +6,14 @@
 
 #include "bench/studies/statistics.h"
 #include "core/base/clock.h"
-#include "wavefront/ray_record.h"
+#include "wavefront/ray_columns.h"
 
 namespace raypool::studies {
 
 namespace {
 
 using wavefront::RayColumns;
-using wavefront::RayRecord;
+using RayRecord;
 
 /// The survivors of each register of records.
 template <class Real>

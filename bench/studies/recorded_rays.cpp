@@ -53,7 +53,7 @@ RecordedRays in_columns(std::size_t kind, const std::vector<LoggedRay>& rays) {
                           .light_t = std::vector<float>(room),
                           .light_id = std::vector<std::int32_t>(room, kNoPrimitive)};
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        wavefront::RayRecord<float> record{};
+        RayRecord<float> record{};
         record.ray = rays[i].ray;
         record.leaving_id = static_cast<std::uint32_t>(rays[i].leaving_id);
         recorded.records.append<float>(i, record, 1, rays.size());

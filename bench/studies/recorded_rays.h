@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/runtime/engine.h"
-#include "wavefront/ray_record.h"
+#include "wavefront/ray_columns.h"
 
 namespace raypool::studies {
 

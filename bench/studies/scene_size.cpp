@@ -33,11 +33,13 @@ constexpr const char* kAutomatic = "automatic";
 constexpr const char* kCounted = "cache misses";
 constexpr const char* kLists = "lists";
 
-/// Of meshes those that the peers have not.
+/// Meshes without peers: instances they have not, and on needles Embree's own triangles make another image
+/// (docs/pool.md).
 constexpr const char* kInstances = "instances";
+constexpr const char* kNeedles = "needles";
 /// What the script scenes/generate strews, and scenes/generate_mesh.
 constexpr const char* kStrewnKinds[] = {"spheres", "quads", "cluster"};
-constexpr const char* kMeshKinds[] = {"field", "room", "terrain", "blob", "needles", kInstances};
+constexpr const char* kMeshKinds[] = {"field", "room", "terrain", "blob", kNeedles, kInstances};
 
 /// A generated scene, made when it is wanted.
 struct SizedScene {
@@ -252,7 +254,7 @@ std::vector<Case> scene_size_cases(const StudyOptions& options) {
                 settings.threads = 1;
 #ifdef RAYPOOL_HAS_EMBREE
                 // Their trees are built for each render, which takes longer than it.
-                if (is_mesh(kind) && kind != kInstances && depth == depths(kind, options).back())
+                if (is_mesh(kind) && kind != kInstances && kind != kNeedles && depth == depths(kind, options).back())
                     add_peers(cases, scene, settings, plan.repeats);
 #endif
                 for (const SizedWay& way : ways) {

@@ -34,21 +34,6 @@ FixedPoint FixedPoint::make(std::int64_t spp, double max_radiance, double parts)
     return {62 - limit_bits - spp_bits - part_bits, std::ldexp(1.0, limit_bits)};
 }
 
-FixedRgb SampleConverter::convert_bad(const Eigen::Vector3d& radiance) {
-    if (!std::isfinite(radiance[0]) || !std::isfinite(radiance[1]) || !std::isfinite(radiance[2])) {
-        ++statistics_.non_finite;
-        return {};
-    }
-    FixedRgb fixed{};
-    for (int i = 0; i < 3; ++i) {
-        const double kept = std::clamp(radiance[i], 0.0, limit_);
-        if (kept != radiance[i]) ++statistics_.clamped;
-        statistics_.clamped_energy += radiance[i] - kept;
-        fixed[i] = std::llrint(kept * scale_);
-    }
-    return fixed;
-}
-
 Framebuffer::Framebuffer(std::int64_t width, std::int64_t height, const FixedPoint& fixed, Halves halves)
     : width_(width), height_(height), fixed_(fixed), halves_(halves), sums_(3 * cells_of(width * height, halves)) {}
 

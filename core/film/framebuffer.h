@@ -8,52 +8,19 @@
 /// (adaptive.h), is exact and free of order too, and does not ask in how many parts a sample comes.
 #pragma once
 
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/film/sample_converter.h"
 #include "core/image/image.h"
 #include "core/math/path.h"
 #include "core/math/real_wide.h"
 #include "core/math/vec.h"
 
 namespace raypool {
-
-/// What was wrong with samples; summed over threads. In a sound render all are zero.
-struct SampleStatistics {
-    std::int64_t non_finite = 0;  ///< samples with a NaN or infinite channel, left out whole
-    std::int64_t clamped = 0;     ///< channels above the limit, or below zero, cut to it
-    double clamped_energy = 0;    ///< radiance that the cut took away, summed
-
-    void add(const SampleStatistics& other) {
-        non_finite += other.non_finite;
-        clamped += other.clamped;
-        clamped_energy += other.clamped_energy;
-    }
-};
-
-/// A sum or a sample in fixed point.
-using FixedRgb = std::array<std::int64_t, 3>;
-
-/// How radiance becomes an integer.
-struct FixedPoint {
-    int fraction_bits = 0;
-    double limit = 0;  ///< radiance above which a channel of a part of a sample is cut: at least twice max_radiance
-
-    /// Renders of up to this many samples a pixel have one step, so that one of them can be extended to any other.
-    static constexpr std::int64_t kExtensibleSamples = 16384;
-
-    /// For up to `spp` samples a pixel that come in parts, each channel of a part at most max_radiance, and of a sample
-    /// at most `parts` times that.
-    static FixedPoint make(std::int64_t spp, double max_radiance, double parts = 1);
-
-    bool operator==(const FixedPoint&) const = default;
-    [[nodiscard]] double scale() const { return std::ldexp(1.0, fraction_bits); }
-};
 
 /// Plain additions are right as long as no two threads add to a pixel.
 enum class Addition : bool { Plain, Atomic };
@@ -71,39 +38,15 @@ void add_to(Sum& sum, Sum value) {
 /// Whether a framebuffer has one sum a pixel, or keeps those of two halves of its samples apart.
 enum class Halves : bool { Together, Apart };
 
-/// Turns samples into integers, keeping an account of bad ones. One per thread.
-class SampleConverter {
-  public:
-    explicit SampleConverter(const FixedPoint& fixed) : scale_(fixed.scale()), limit_(fixed.limit) {}
-
-    /// Rounds to nearest. Zero for a sample that is not finite.
-    template <class Scalar>
-    FixedRgb convert(const Vec3<Scalar>& radiance) {
-        FixedRgb fixed{};
-        for (int i = 0; i < 3; ++i) {
-            const double value = static_cast<double>(radiance[i]);
-            if (!(value >= 0 && value <= limit_)) [[unlikely]]
-                return convert_bad(radiance.template cast<double>());
-            fixed[i] = std::llrint(value * scale_);
-        }
-        return fixed;
-    }
-    /// convert() of eight samples whose channels are columns, where the processor can: fixed[k][i] of channel k. False,
-    /// and nothing of use in `fixed`, where it cannot or a sample is bad.
-    [[nodiscard]] bool convert_eight(const float* const (&channel)[3], std::int64_t (&fixed)[3][8]) const {
-        bool is_good = true;
-        for (int k = 0; k < 3; ++k) is_good = is_good && x86::round_eight(channel[k], scale_, limit_, fixed[k]);
-        return is_good;
-    }
-    [[nodiscard]] const SampleStatistics& statistics() const { return statistics_; }
-
-  private:
-    FixedRgb convert_bad(const Eigen::Vector3d& radiance);
-
-    double scale_;
-    double limit_;
-    SampleStatistics statistics_;
-};
+/// SampleConverter::convert() of eight samples whose channels are columns, where the processor can: fixed[k][i] of
+/// channel k. False, and nothing of use in `fixed`, where it cannot or a sample is bad.
+[[nodiscard]] inline bool convert_eight(const SampleConverter& converter, const float* const (&channel)[3],
+                                        std::int64_t (&fixed)[3][8]) {
+    bool is_good = true;
+    for (int k = 0; k < 3; ++k)
+        is_good = is_good && x86::round_eight(channel[k], converter.scale(), converter.limit(), fixed[k]);
+    return is_good;
+}
 
 class Framebuffer {
   public:
@@ -141,13 +84,5 @@ class Framebuffer {
     Halves halves_;
     std::vector<std::int64_t> sums_;
 };
-
-/// Where a sample of a pixel is added: to the pixel itself, or to a half of it.
-template <class U>
-RAYPOOL_INLINE U cell_of(bool has_halves, const U& pixel, const U& sample) {
-    if (!has_halves) [[likely]]
-        return pixel;
-    return pixel + pixel + half_of_sample<U>(pixel, sample);
-}
 
 }  // namespace raypool

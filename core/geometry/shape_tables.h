@@ -144,6 +144,23 @@ struct ShapeView {
           triangle_tree(tables.triangle_tree),
           instance_tree(typename InstanceTreeView<Scalar>::Tree(tables.instance_tree),
                         typename InstanceTreeView<Scalar>::Objects(tables.object_trees)) {}
+
+    /// Calls visit(std::span&) for every table that is seen, in the order of ShapeTables::for_each_table().
+    template <class Self, class Visit>
+    static void for_each_span(Self& self, Visit visit) {
+        visit(self.large_spheres);
+        visit(self.planes);
+        const auto visit_tree = [&](auto& tree) {
+            visit(tree.nodes);
+            for (auto& along_axis : tree.motion) visit(along_axis);
+            visit(tree.blocks);
+        };
+        visit_tree(self.sphere_tree);
+        visit_tree(self.quad_tree);
+        visit_tree(self.triangle_tree);
+        visit_tree(self.instance_tree);
+        visit_tree(self.instance_tree.objects);
+    }
 };
 
 }  // namespace raypool

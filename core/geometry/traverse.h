@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "core/geometry/block_tests.h"
+#include "core/geometry/occlusion.h"
 #include "core/geometry/test_count.h"
 
 namespace raypool {
@@ -15,9 +16,6 @@ namespace raypool {
 /// leaves width - 1 behind. A level of a wide tree stands for one or more of the binary one.
 template <int width>
 inline constexpr int kTraversalStack = kMostTreeLevels*(width - 1) + 1;
-
-template <class Scalar>
-struct Occlusion;  // occlusion.h
 
 namespace detail {
 
@@ -97,7 +95,7 @@ RAYPOOL_INLINE void walk(const Tree& tree, const Boxes& boxes, const Ready& read
     }
 }
 
-/// The same until something hides a light (occlusion.h).
+/// The same until something hides a light (any_hit.h).
 template <Features features, class Real, class Tree, class Boxes, class Ready, class Work>
 RAYPOOL_INLINE void walk(const Tree& tree, const Boxes& boxes, const Ready& ready, Occlusion<ScalarOf<Real>>& light,
                          Work& work, std::int32_t child);

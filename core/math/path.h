@@ -46,4 +46,12 @@ RAYPOOL_INLINE U half_of_sample(const U& pixel, const U& sample) {
     return (x >> 31) ^ (sample & U(1U));
 }
 
+/// Where a sample of a pixel is added: to the pixel itself, or to a half of it.
+template <class U>
+RAYPOOL_INLINE U cell_of(bool has_halves, const U& pixel, const U& sample) {
+    if (!has_halves) [[likely]]
+        return pixel;
+    return pixel + pixel + half_of_sample<U>(pixel, sample);
+}
+
 }  // namespace raypool

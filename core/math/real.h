@@ -140,6 +140,12 @@ RAYPOOL_INLINE ScalarOf<Real> greatest_lane(const Real& v) {
     return detail::RealOperations<Real>::greatest_lane(v);
 }
 
+/// Of `from[0]`, `from[1]`, ... by lane, where a register begins.
+template <class Real>
+RAYPOOL_INLINE Real load_aligned(const ScalarOf<Real>* from) {
+    return detail::RealOperations<Real>::load(from);
+}
+
 /// compress_store() of many registers of Real's lanes with the same bits: LanePacker(bits), then store(target,
 /// register); or pack(register), which returns the register that would be stored: its first lanes are those of `bits`.
 template <class Real>

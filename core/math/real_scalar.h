@@ -44,6 +44,7 @@ struct RealOperations {
     RAYPOOL_INLINE static Real from_uint32(std::uint32_t a) { return static_cast<Real>(static_cast<std::int32_t>(a)); }
     RAYPOOL_INLINE static std::uint32_t lane_numbers() { return 0; }
     RAYPOOL_INLINE static Real greatest_lane(Real a) { return a; }
+    RAYPOOL_INLINE static Real load(const Real* from) { return *from; }
 
     template <int size>
     RAYPOOL_INLINE static Real pick(const Real* table, std::uint32_t which) {

@@ -181,6 +181,7 @@ struct RealOperations<Real> {
         return Uint32([](auto i) { return static_cast<std::uint32_t>(i); });
     }
     RAYPOOL_INLINE static Scalar greatest_lane(const Real& v) { return x86::greatest(reg(v)); }
+    RAYPOOL_INLINE static Real load(const Scalar* from) { return Real(from, stdx::vector_aligned); }
 
     template <int size>
     RAYPOOL_INLINE static Real pick(const Scalar* table, const Uint32& which) {

@@ -129,18 +129,18 @@ class Compiler {
         std::size_t count = 0;
         for (const Texture& texture : scene_.textures)
             if (texture.image) count += texture.image->rgb.size() / 3 * 4;
-        out_.texels.reserve(count);  // views point into it
+        out_.texels.reserve(count);
         for (const Texture& texture : scene_.textures) {
-            ImageView<Scalar> view;
+            ImagePlace place;
             if (texture.image) {
-                view = {out_.texels.data() + out_.texels.size(), static_cast<std::int32_t>(texture.image->width),
-                        static_cast<std::int32_t>(texture.image->height)};
+                place = {static_cast<std::int64_t>(out_.texels.size()), static_cast<std::int32_t>(texture.image->width),
+                         static_cast<std::int32_t>(texture.image->height)};
                 for (std::size_t i = 0; i < texture.image->rgb.size(); i += 3)
                     for (const float channel :
                          {texture.image->rgb[i], texture.image->rgb[i + 1], texture.image->rgb[i + 2], 0.0F})
                         out_.texels.push_back(channel);
             }
-            out_.images.push_back(view);
+            out_.images.push_back(place);
         }
     }
 

@@ -124,8 +124,8 @@ struct SceneTables : ShapeTables<Scalar> {
     std::vector<Scalar> instance_first_ids;      ///< the bits of whole numbers, in order
     /// Unit, three scalars each, and one scalar behind the last; empty where no mesh has any.
     std::vector<Scalar> vertex_normals;
-    std::vector<Scalar> vertex_uv;          ///< two of each vertex; empty where no mesh has any
-    std::vector<ImageView<Scalar>> images;  ///< by texture id, beside `textures`
+    std::vector<Scalar> vertex_uv;   ///< two of each vertex; empty where no mesh has any
+    std::vector<ImagePlace> images;  ///< by texture id, beside `textures`
     std::vector<Scalar> texels;
     LightTable<Scalar> lights;
     EnvironmentTables<Scalar> environment;
@@ -176,9 +176,31 @@ struct SceneView : ShapeView<Scalar> {
     std::span<const Scalar> instance_first_ids;
     std::span<const Scalar> vertex_normals;
     std::span<const Scalar> vertex_uv;
-    std::span<const ImageView<Scalar>> images;
+    std::span<const ImagePlace> images;
+    std::span<const Scalar> texels;
     std::span<const LightRow<Scalar>> lights;
     std::span<const Scalar> light_weights;
+
+    /// Calls visit(std::span&) for every table that is seen, in the order of SceneTables::for_each_table().
+    template <class Self, class Visit>
+    static void for_each_span(Self& self, Visit visit) {
+        visit(self.surfaces);
+        visit(self.textures);
+        visit(self.planars);
+        visit(self.triangles);
+        visit(self.vertices);
+        visit(self.instance_first_ids);
+        visit(self.vertex_normals);
+        visit(self.vertex_uv);
+        visit(self.images);
+        visit(self.texels);
+        visit(self.lights);
+        visit(self.light_weights);
+        visit(self.environment.texels);
+        visit(self.environment.rows);
+        visit(self.environment.entries);
+        ShapeView<Scalar>::for_each_span(self, visit);
+    }
 
     /// Radiance that a limit of depth cuts off a pixel, on average over its paths: at most this in any channel.
     [[nodiscard]] double truncation_bound(std::int32_t depth) const {
@@ -236,6 +258,7 @@ class CompiledScene : public SceneView<Scalar> {
         this->vertex_normals = tables_->vertex_normals;
         this->vertex_uv = tables_->vertex_uv;
         this->images = tables_->images;
+        this->texels = tables_->texels;
         this->lights = tables_->lights.rows;
         this->light_weights = tables_->lights.weights;
         this->environment.texels = tables_->environment.texels;

@@ -184,10 +184,10 @@ RAYPOOL_INLINE Vec3<Real> surface_colour(const SceneView<ScalarOf<Real>>& scene,
     if constexpr (features.uv) {
         for (unsigned bits = mask_bits(is_image); bits != 0; bits &= bits - 1) {
             const int i = std::countr_zero(bits);
-            const auto& image = scene.images[static_cast<std::size_t>(lane(code.texture_row(), i))];
+            const ImagePlace& image = scene.images[static_cast<std::size_t>(lane(code.texture_row(), i))];
             const auto repeat = static_cast<int>(lane(texture_kind, i)) - static_cast<int>(Texture::Kind::Image);
-            const Vec3<S> texel =
-                image_colour<S>(image, lane(uv[0], i), lane(uv[1], i), ImageRepeat::of_number(repeat));
+            const Vec3<S> texel = image_colour<S>(image.view(scene.texels.data()), lane(uv[0], i), lane(uv[1], i),
+                                                  ImageRepeat::of_number(repeat));
             for (int k = 0; k < 3; ++k) {
                 if constexpr (Simd<Real>) {
                     colour[k][i] = texel[k];

@@ -55,12 +55,24 @@ RAYPOOL_INLINE std::array<Real, 2> sphere_coordinates(const Vec3<Real>& n) {
     return {u, v};
 }
 
-/// An image in the compiled scene's texel table: rows from the top, four scalars a texel (r, g, b, unused).
+/// An image: rows from the top, four scalars a texel (r, g, b, unused).
 template <class Scalar>
 struct ImageView {
     const Scalar* texels = nullptr;
     std::int32_t width = 0;
     std::int32_t height = 0;
+};
+
+/// Where an image lies in the compiled scene's table of texels.
+struct ImagePlace {
+    std::int64_t first = 0;  ///< scalar
+    std::int32_t width = 0;
+    std::int32_t height = 0;
+
+    template <class Scalar>
+    [[nodiscard]] RAYPOOL_INLINE ImageView<Scalar> view(const Scalar* texels) const {
+        return {texels + first, width, height};
+    }
 };
 
 /// Whether an image begins anew beyond its edges along u, and along v; where not, its edge goes on.

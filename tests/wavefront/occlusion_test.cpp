@@ -1,5 +1,5 @@
 /// What hides a light from a shadow ray: single rays and streams against every shape, asked one by one.
-#include "core/geometry/occlusion.h"
+#include "core/geometry/any_hit.h"
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 /// Records survive storing, loading and moving to the last bit, and no store touches a record that is not its own.
-#include "wavefront/ray_record.h"
+#include "wavefront/ray_columns.h"
 
 #include <bit>
 #include <numeric>

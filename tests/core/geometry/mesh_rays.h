@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "core/geometry/occlusion.h"
+#include "core/geometry/any_hit.h"
 #include "core/shading/shade.h"
 #include "tests/core/geometry/brute_force.h"
 #include "tests/random_inputs.h"

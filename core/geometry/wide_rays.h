@@ -1,14 +1,13 @@
-/// A register of rays against one box or one shape: what packets and streams are made of.
+/// A register of rays, or a single one, against one box or one shape: what packets and streams are made of, and walks
+/// on a GPU.
 ///
-/// The mirror image of core/geometry/block_tests.h, which has one ray against a register of boxes and shapes; the same
-/// kernels of core/geometry/shapes.h, so the same bits.
+/// The mirror image of block_tests.h, which has one ray against a register of boxes and shapes; the same
+/// kernels of shapes.h, so the same bits.
 #pragma once
 
-#include "core/geometry/shapes.h"
-#include "core/geometry/traverse.h"
-#include "core/shading/compiled_scene.h"
+#include "core/geometry/tree_bounds.h"
 
-namespace raypool::wavefront {
+namespace raypool {
 
 /// A ray a lane, with what the kernels need of each.
 template <class Real>
@@ -18,40 +17,11 @@ struct WideRays {
     Int<Real> leaving_id;
 };
 
-/// Primitive ids as a record keeps them, in unsigned numbers, as the kernels compare them.
-template <Simd Real>
-RAYPOOL_INLINE Int<Real> signed_ids(const Uint32<Real>& ids) {
-    using Signed = stdx::rebind_simd_t<std::int32_t, Uint32<Real>>;
-    return stdx::static_simd_cast<Int<Real>>(stdx::static_simd_cast<Signed>(ids));
-}
-/// The inverse, for a scalar too.
-template <class Real>
-RAYPOOL_INLINE Uint32<Real> id_bits(const Int<Real>& id) {
-    if constexpr (Simd<Real>) {
-        return stdx::static_simd_cast<Uint32<Real>>(id);
-    } else {
-        return static_cast<std::uint32_t>(id);
-    }
-}
-/// Whole numbers by the bits of a mask.
-template <class Real>
-RAYPOOL_INLINE Uint32<Real> select_bits(unsigned bits, const Uint32<Real>& yes, const Uint32<Real>& no) {
-    if constexpr (Simd<Real>) {
-        return Uint32<Real>([&](auto i) { return (bits >> i & 1U) != 0 ? lane(yes, i) : lane(no, i); });
-    } else {
-        return bits != 0 ? yes : no;
-    }
-}
 /// Camera rays, which start on nothing.
 template <class Real>
 RAYPOOL_INLINE WideRays<Real> wide_camera_rays(const Ray<Real>& ray) {
     return {ray, ray_inverse<Real>(ray.direction), Int<Real>(kNoPrimitive)};
 }
-template <Simd Real>
-RAYPOOL_INLINE WideRays<Real> wide_rays(const Ray<Real>& ray, const Uint32<Real>& leaving_id) {
-    return {ray, ray_inverse<Real>(ray.direction), signed_ids<Real>(leaving_id)};
-}
-
 /// Takes the hits at `t` of primitive `id` that are closer than the closest so far.
 template <class Real>
 RAYPOOL_INLINE Mask<Real> closer(const Real& t, std::int32_t id, const Hit<Real>& hit) {
@@ -133,9 +103,9 @@ RAYPOOL_INLINE Mask<Real> intersect_lane(const Block& block, int lane, const Ray
         triangle_distance<Real>(ray.origin, rays.shear, vertex, as_mask<Real>(rays.leaving_id == Int<Real>(id)));
     Mask<Real> is_closer = closer<Real>(t, id, hit);
     if (none(is_closer)) return is_closer;
-    is_closer = is_closer && raypool::detail::is_inside_triangle_box<Real>(vertex, ray.origin, rays, t);
+    is_closer = is_closer && detail::is_inside_triangle_box<Real>(vertex, ray.origin, rays, t);
     if constexpr (IsPlaced<Rays>)
-        is_closer = is_closer && raypool::detail::is_inside_object_box<Real>(stored, rays.in_object, t);
+        is_closer = is_closer && detail::is_inside_object_box<Real>(stored, rays.in_object, t);
     hit.t = select(is_closer, t, hit.t);
     hit.primitive_id = select(is_closer, Int<Real>(id), hit.primitive_id);
     return is_closer;
@@ -219,4 +189,4 @@ RAYPOOL_INLINE Interval<Real> child_interval(const Bounds& bounds, std::size_t n
     }
 }
 
-}  // namespace raypool::wavefront
+}  // namespace raypool

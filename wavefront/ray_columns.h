@@ -1,7 +1,5 @@
-/// The ray record: what a path is between two segments, and how a pool stores many of them.
-///
-/// The fields are listed once, in for_each_field(). Size, storage, loading, storing and moving all derive from that
-/// list. Storage is structure-of-arrays: a column a field. What a scene does not need is not stored.
+/// How a pool stores ray records: structure-of-arrays, a column a field. Storage, loading, storing and moving derive
+/// from the list of fields in core/shading/ray_record.h.
 #pragma once
 
 #include <cstddef>
@@ -10,44 +8,9 @@
 #include <memory>
 #include <new>
 
-#include "core/math/path.h"
-#include "core/math/vec.h"
-#include "core/scene/features.h"
+#include "core/shading/ray_record.h"
 
 namespace raypool::wavefront {
-
-/// One record, or a register of them, a lane each.
-template <class Real>
-struct RayRecord {
-    Ray<Real> ray;
-    Vec3<Real> throughput;
-    PathKey<Real> key;
-    Uint32<Real> leaving_id;  ///< what the ray starts on (RayStart::leaving_id); kNoPrimitive as an unsigned number
-    Uint32<Real> step;        ///< path_step: hits so far, and the branch
-    Real density;             ///< of the direction, where lights were sampled too; else 0
-};
-
-/// The one list of fields.
-template <Features features, class Record, class Visit>
-RAYPOOL_INLINE void for_each_field(Record& record, Visit visit) {
-    for (int i = 0; i < 3; ++i) visit(record.ray.origin[i]);
-    for (int i = 0; i < 3; ++i) visit(record.ray.direction[i]);
-    if constexpr (features.motion) visit(record.ray.time);
-    for (int i = 0; i < 3; ++i) visit(record.throughput[i]);
-    visit(record.key.pixel);
-    visit(record.key.sample);
-    visit(record.leaving_id);
-    visit(record.step);
-    if constexpr (features.lights) visit(record.density);
-}
-
-template <Features features, class Scalar>
-constexpr std::size_t record_bytes() {
-    std::size_t bytes = 0;
-    RayRecord<Scalar> record{};
-    for_each_field<features>(record, [&](const auto& field) { bytes += sizeof(field); });
-    return bytes;
-}
 
 template <class T>
 struct LaneOf {

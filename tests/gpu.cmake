@@ -1,0 +1,48 @@
+# What proves the GPU engine without a GPU: the kernels' bodies run by the host, everywhere; and where nvcc is, the PTX
+# that it makes of them, translated and run.
+
+raypool_test(gpu_test equivalence gpu/host_device_test.cpp)
+target_link_libraries(gpu_test PRIVATE raypool_gpu)
+target_compile_definitions(gpu_test PRIVATE RAYPOOL_FAILURE_FOLDER="${CMAKE_CURRENT_BINARY_DIR}/failed")
+
+if(NOT RAYPOOL_NVCC OR RAYPOOL_SANITIZE)
+  message(STATUS "Tests of the GPU engine: the kernels' bodies are run by the host; their PTX is not, for want of nvcc or "
+                 "beside sanitizers")
+  return()
+endif()
+
+set(translate ${CMAKE_CURRENT_SOURCE_DIR}/gpu/ptx/translate.py)
+# raypool_ptx(NAME flags...): the program NAME, whose device is the PTX that nvcc makes with these flags.
+function(raypool_ptx name)
+  set(ptx ${CMAKE_CURRENT_BINARY_DIR}/${name}.ptx)
+  set(cpp ${CMAKE_CURRENT_BINARY_DIR}/${name}_translated.cpp)
+  raypool_nvcc(${ptx} -arch=compute_80 -ptx ${ARGN})
+  add_custom_command(OUTPUT ${cpp} COMMAND Python3::Interpreter ${translate} ${ptx} ${cpp} DEPENDS ${ptx} ${translate}
+                     VERBATIM)
+  add_executable(${name} gpu/ptx_test.cpp gpu/ptx/machine.cpp ${cpp})
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
+  set_source_files_properties(${cpp} PROPERTIES SKIP_PRECOMPILE_HEADERS ON COMPILE_OPTIONS
+    "-O1;-Wno-unused-function;-Wno-unused-label;-Wno-unused-variable;-Wno-unused-but-set-variable;-Wno-overflow")
+  target_precompile_headers(${name} REUSE_FROM raypool_precompiled_not_hot)
+  target_link_libraries(${name} PRIVATE raypool_gpu raypool_recursive raypool_core raypool_not_hot GTest::gtest_main
+                                        raypool_warnings)
+  target_compile_definitions(${name} PRIVATE RAYPOOL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                                             RAYPOOL_FAILURE_FOLDER="${CMAKE_CURRENT_BINARY_DIR}/failed")
+endfunction()
+
+raypool_ptx(gpu_ptx_test ${RAYPOOL_NVCC_ROUNDING})
+gtest_discover_tests(gpu_ptx_test PROPERTIES LABELS equivalence DISCOVERY_TIMEOUT 60)
+
+# Were the compiler to fuse operations or to approximate them, it would be found out.
+raypool_ptx(gpu_fused_ptx -fmad=true -ftz=true -prec-div=true -prec-sqrt=true)
+raypool_ptx(gpu_fast_ptx -use_fast_math)
+foreach(mutant gpu_fused_ptx gpu_fast_ptx)
+  add_test(NAME ${mutant} COMMAND ${mutant} --gtest_filter=*/PtxForms.*/paper:*/PtxForms.*/textures)
+  set_tests_properties(${mutant} PROPERTIES LABELS equivalence WILL_FAIL ON)
+endforeach()
+
+add_test(NAME gpu_opcodes
+         COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/gpu/ptx_opcodes_test.py gpu_ptx_test.ptx gpu_fused_ptx.ptx
+                 gpu_fast_ptx.ptx
+         WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
+set_tests_properties(gpu_opcodes PROPERTIES LABELS unit)

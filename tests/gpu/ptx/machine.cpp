@@ -1,0 +1,102 @@
+#include "tests/gpu/ptx/machine.h"
+
+#include <ucontext.h>
+
+#include <array>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace raypool::ptx {
+
+Thread thread;
+
+namespace {
+
+constexpr std::uint32_t kLanes = 32;
+constexpr std::size_t kStackBytes = 1 << 20;
+
+/// The warp that runs: a stack a lane, and who waits for whom.
+struct Warp {
+    struct Lane {
+        ucontext_t context;
+        std::unique_ptr<char[]> stack = std::make_unique_for_overwrite<char[]>(kStackBytes);
+        bool is_over = true;
+        Meeting brought{};
+    };
+    ucontext_t scheduler{};
+    std::array<Lane, kLanes> lanes;
+    std::uint32_t running = 0;
+    std::array<std::uint32_t, kLanes> values{};  ///< of the last meeting
+    const Entry* entry = nullptr;
+    const std::uint8_t* parameter = nullptr;
+};
+Warp warp;
+
+void run_lane() {
+    warp.entry->run(warp.parameter);
+    Warp::Lane& lane = warp.lanes[warp.running];
+    lane.is_over = true;
+    swapcontext(&lane.context, &warp.scheduler);
+}
+
+void start_lane(std::uint32_t number) {
+    Warp::Lane& lane = warp.lanes[number];
+    getcontext(&lane.context);
+    lane.context.uc_stack.ss_sp = lane.stack.get();
+    lane.context.uc_stack.ss_size = kStackBytes;
+    lane.context.uc_link = nullptr;
+    makecontext(&lane.context, run_lane, 0);
+    lane.is_over = false;
+}
+
+/// Lets every lane go on to its next meeting, or to its end. Returns whether any waits.
+bool advance(std::uint32_t first_tid) {
+    std::uint32_t living = 0;
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+        if (warp.lanes[i].is_over) continue;
+        warp.running = i;
+        thread.tid = first_tid + i;
+        swapcontext(&warp.scheduler, &warp.lanes[i].context);
+        if (!warp.lanes[i].is_over) living |= 1U << i;
+    }
+    warp.values = {};
+    const char* name = nullptr;
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+        if ((living >> i & 1U) == 0) continue;
+        const Meeting& brought = warp.lanes[i].brought;
+        if (name == nullptr) name = brought.name;
+        if (std::string(name) != brought.name || (brought.mask & living) != living)
+            throw std::logic_error("the lanes of a warp do not meet: one " + std::string(brought.name) + ", another " +
+                                   name);
+        warp.values[i] = brought.value;
+    }
+    return living != 0;
+}
+
+}  // namespace
+
+void meet(const Meeting& brought) {
+    Warp::Lane& lane = warp.lanes[warp.running];
+    lane.brought = brought;
+    swapcontext(&lane.context, &warp.scheduler);
+}
+std::uint32_t brought_by(std::uint32_t lane) {
+    return warp.values[lane];
+}
+
+void run_grid(const Entry& entry, const std::uint8_t* parameter, std::uint32_t blocks, std::uint32_t block_threads) {
+    warp.entry = &entry;
+    warp.parameter = parameter;
+    thread.ntid = block_threads;
+    thread.nctaid = blocks;
+    for (thread.ctaid = 0; thread.ctaid < blocks; ++thread.ctaid) {
+        for (std::uint32_t first = 0; first < block_threads; first += kLanes) {
+            for (std::uint32_t i = 0; i < kLanes && first + i < block_threads; ++i) start_lane(i);
+            while (advance(first)) {
+            }
+        }
+    }
+}
+
+}  // namespace raypool::ptx
