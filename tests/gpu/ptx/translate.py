@@ -2,7 +2,7 @@
 
     translate.py IN.ptx OUT.cpp
 
-Each instruction becomes a call of the function of its name, dots as underscores, in machine.h: an instruction that is not
+Each instruction becomes a call of the function of its name, dots as underscores, in instructions.h: an instruction that is not
 there does not compile, so that nothing is guessed. Each kernel is entered into a table by the numbers in its name
 (`run<features, kernel>`). See NVIDIA, "Parallel Thread Execution ISA".
 """
@@ -174,7 +174,7 @@ def translate(text):
         head = f"static void entry_{features}_{kernel}(const std::uint8_t* {parameter})"
         kernels.append((features, kernel))
         functions.append((head, body(enclosed(text, found.end()))))
-    lines = ['#include "tests/gpu/ptx/machine.h"', "namespace raypool::ptx {", "namespace {", *constants,
+    lines = ['#include "tests/gpu/ptx/instructions.h"', "namespace raypool::ptx {", "namespace {", *constants,
              *(head + ";" for head in prototypes)]
     for head, code in functions:
         lines += [head + " {", *("    " + line for line in code), "}"]
