@@ -23,9 +23,20 @@ set(RAYPOOL_NVCC_FLAGS -std=c++20 --expt-relaxed-constexpr -diag-suppress 20012,
 # Which chips the kernels are compiled for: the last of them also as PTX, for those to come.
 set(RAYPOOL_CUDA_ARCHS "80;86;89;90" CACHE STRING "Compute capabilities that the GPU engine is compiled for")
 
-# raypool_nvcc(OUT flags...): compiles gpu/kernels.cu to OUT.
-function(raypool_nvcc out)
+# raypool_nvcc(SOURCE OUT flags...)
+function(raypool_nvcc source out)
   add_custom_command(OUTPUT ${out}
-    COMMAND ${RAYPOOL_NVCC} ${RAYPOOL_NVCC_FLAGS} ${ARGN} -MD -MT ${out} -MF ${out}.d ${PROJECT_SOURCE_DIR}/gpu/kernels.cu -o ${out}
-    DEPENDS ${PROJECT_SOURCE_DIR}/gpu/kernels.cu DEPFILE ${out}.d COMMAND_EXPAND_LISTS VERBATIM)
+    COMMAND ${RAYPOOL_NVCC} ${RAYPOOL_NVCC_FLAGS} ${ARGN} -MD -MT ${out} -MF ${out}.d ${PROJECT_SOURCE_DIR}/${source} -o ${out}
+    DEPENDS ${PROJECT_SOURCE_DIR}/${source} DEPFILE ${out}.d COMMAND_EXPAND_LISTS VERBATIM)
+endfunction()
+
+# raypool_nvcc_object(SOURCE OUT): for all chips, to be linked with raypool_cuda.
+function(raypool_nvcc_object source out)
+  foreach(arch ${RAYPOOL_CUDA_ARCHS})
+    list(APPEND codes -gencode=arch=compute_${arch},code=sm_${arch})
+  endforeach()
+  list(GET RAYPOOL_CUDA_ARCHS -1 newest)
+  list(APPEND codes -gencode=arch=compute_${newest},code=compute_${newest})
+  raypool_nvcc(${source} ${out} -O3 ${RAYPOOL_NVCC_ROUNDING} -ccbin ${CMAKE_CXX_COMPILER} -Xcompiler -march=${RAYPOOL_ARCH} ${codes} -c)
+  set_source_files_properties(${out} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
 endfunction()

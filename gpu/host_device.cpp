@@ -7,7 +7,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
-#include "core/runtime/engine.h"
+#include "core/math/flush_denormals.h"
 
 namespace raypool::gpu {
 

@@ -12,17 +12,20 @@ if(NOT RAYPOOL_NVCC OR RAYPOOL_SANITIZE)
 endif()
 
 set(translate ${CMAKE_CURRENT_SOURCE_DIR}/gpu/ptx/translate.py)
-# raypool_ptx(NAME flags...): the program NAME, whose device is the PTX that nvcc makes with these flags.
-function(raypool_ptx name)
+# raypool_ptx(NAME SOURCE TEST flags...): the program NAME: TEST, and the PTX that nvcc makes of SOURCE with these flags.
+function(raypool_ptx name source test)
   set(ptx ${CMAKE_CURRENT_BINARY_DIR}/${name}.ptx)
   set(cpp ${CMAKE_CURRENT_BINARY_DIR}/${name}_translated.cpp)
-  raypool_nvcc(${ptx} -arch=compute_80 -ptx ${ARGN})
+  raypool_nvcc(${source} ${ptx} -arch=compute_80 -ptx ${ARGN})
   add_custom_command(OUTPUT ${cpp} COMMAND Python3::Interpreter ${translate} ${ptx} ${cpp} DEPENDS ${ptx} ${translate}
                      VERBATIM)
-  add_executable(${name} gpu/ptx_test.cpp gpu/ptx/machine.cpp ${cpp})
+  add_executable(${name} ${test} gpu/ptx/machine.cpp ${cpp})
   set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   set_source_files_properties(${cpp} PROPERTIES SKIP_PRECOMPILE_HEADERS ON COMPILE_OPTIONS
     "-O1;-Wno-unused-function;-Wno-unused-label;-Wno-unused-variable;-Wno-unused-but-set-variable;-Wno-overflow")
+  raypool_gpu_program(${name})
+endfunction()
+function(raypool_gpu_program name)
   target_precompile_headers(${name} REUSE_FROM raypool_precompiled_not_hot)
   target_link_libraries(${name} PRIVATE raypool_gpu raypool_recursive raypool_core raypool_not_hot GTest::gtest_main
                                         raypool_warnings)
@@ -30,12 +33,21 @@ function(raypool_ptx name)
                                              RAYPOOL_FAILURE_FOLDER="${CMAKE_CURRENT_BINARY_DIR}/failed")
 endfunction()
 
-raypool_ptx(gpu_ptx_test ${RAYPOOL_NVCC_ROUNDING})
-gtest_discover_tests(gpu_ptx_test PROPERTIES LABELS equivalence DISCOVERY_TIMEOUT 60)
+raypool_ptx(gpu_ptx_test gpu/kernels.cu gpu/ptx_test.cpp ${RAYPOOL_NVCC_ROUNDING})
+raypool_ptx(gpu_ptx_operations_test tests/gpu/operations.cu gpu/ptx_operations_test.cpp ${RAYPOOL_NVCC_ROUNDING})
+
+# On a GPU, where there is one.
+raypool_nvcc_object(tests/gpu/operations.cu ${CMAKE_CURRENT_BINARY_DIR}/operations.o)
+add_executable(gpu_cuda_test gpu/cuda_test.cpp ${CMAKE_CURRENT_BINARY_DIR}/operations.o)
+raypool_gpu_program(gpu_cuda_test)
+target_link_libraries(gpu_cuda_test PRIVATE raypool_cuda)
+foreach(program gpu_ptx_test gpu_ptx_operations_test gpu_cuda_test)
+  gtest_discover_tests(${program} PROPERTIES LABELS equivalence DISCOVERY_TIMEOUT 60)
+endforeach()
 
 # Were the compiler to fuse operations or to approximate them, it would be found out.
-raypool_ptx(gpu_fused_ptx -fmad=true -ftz=true -prec-div=true -prec-sqrt=true)
-raypool_ptx(gpu_fast_ptx -use_fast_math)
+raypool_ptx(gpu_fused_ptx gpu/kernels.cu gpu/ptx_test.cpp -fmad=true -ftz=true -prec-div=true -prec-sqrt=true)
+raypool_ptx(gpu_fast_ptx gpu/kernels.cu gpu/ptx_test.cpp -use_fast_math)
 foreach(mutant gpu_fused_ptx gpu_fast_ptx)
   add_test(NAME ${mutant} COMMAND ${mutant} --gtest_filter=*/PtxForms.*/paper:*/PtxForms.*/textures)
   set_tests_properties(${mutant} PROPERTIES LABELS equivalence WILL_FAIL ON)

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/film/framebuffer.h"
+#include "core/math/flush_denormals.h"
 #include "core/runtime/report.h"
 #include "core/runtime/settings.h"
 #include "core/shading/compiled_scene.h"
@@ -150,20 +151,5 @@ double greatest_sample(const SceneView<Scalar>& scene, const ImageSettings& sett
     const double greatest_part = is_cut ? fixed_point(scene, settings, 1).limit : scene.max_radiance;
     return greatest_part * most_parts(scene, settings);
 }
-
-/// Makes the calling thread treat denormal numbers as zero while it lives; engines hold one in every thread. A path
-/// whose throughput fades would otherwise cost hundreds of times more for light that cannot be seen.
-class FlushDenormals {
-  public:
-    FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | kFlushToZero | kDenormalsAreZero); }
-    ~FlushDenormals() { _mm_setcsr(before_); }
-    FlushDenormals(const FlushDenormals&) = delete;
-    FlushDenormals& operator=(const FlushDenormals&) = delete;
-
-  private:
-    static constexpr unsigned kFlushToZero = 0x8000;
-    static constexpr unsigned kDenormalsAreZero = 0x0040;
-    unsigned before_;
-};
 
 }  // namespace raypool

@@ -5,8 +5,9 @@
 #include <cstring>
 #include <memory>
 #include <new>
-#include <stdexcept>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "gpu/device.h"
 #include "tests/gpu/ptx/machine.h"
@@ -22,14 +23,10 @@ class PtxDevice : public Device {
     void copy_in(void* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
     void copy_out(void* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
     void launch(Kernel kernel, std::size_t features, const Launch& launch, std::int64_t items) override {
-        for (const ptx::Entry& entry : ptx::kEntries) {
-            if (entry.features != static_cast<int>(features) || entry.kernel != static_cast<int>(kernel)) continue;
-            const bool is_single = items == 1;
-            ptx::run_grid(entry, reinterpret_cast<const std::uint8_t*>(&launch), is_single ? 1 : kBlocks,
-                          is_single ? 32 : kThreads);
-            return;
-        }
-        throw std::logic_error("a kernel is not in the PTX");
+        const bool is_single = items == 1;
+        void* parameters[] = {const_cast<Launch*>(&launch)};
+        ptx::run_grid(ptx::find_kernel(fmt::format("runILm{}ELm{}E", features, static_cast<int>(kernel))), parameters,
+                      is_single ? 1 : kBlocks, is_single ? 32 : kThreads);
     }
     [[nodiscard]] double kernel_seconds() override { return 0; }
     void begin_fetch(int place, const Counters* counters) override {

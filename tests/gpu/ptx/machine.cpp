@@ -3,6 +3,7 @@
 #include <ucontext.h>
 
 #include <array>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -28,13 +29,13 @@ struct Warp {
     std::array<Lane, kLanes> lanes;
     std::uint32_t running = 0;
     std::array<std::uint32_t, kLanes> values{};  ///< of the last meeting
-    const Entry* entry = nullptr;
-    const std::uint8_t* parameter = nullptr;
+    const Kernel* kernel = nullptr;
+    void* const* parameters = nullptr;
 };
 Warp warp;
 
 void run_lane() {
-    warp.entry->run(warp.parameter);
+    (*warp.kernel)(warp.parameters);
     Warp::Lane& lane = warp.lanes[warp.running];
     lane.is_over = true;
     swapcontext(&lane.context, &warp.scheduler);
@@ -74,7 +75,27 @@ bool advance(std::uint32_t first_tid) {
     return living != 0;
 }
 
+std::map<std::string, const Kernel*>& kernels() {
+    static std::map<std::string, const Kernel*> all;
+    return all;
+}
+
 }  // namespace
+
+Kernel::Kernel(const char* name, Run run) : run_(run) {
+    kernels()[name] = this;
+}
+
+const Kernel& find_kernel(const std::string& part) {
+    const Kernel* found = nullptr;
+    for (const auto& [name, kernel] : kernels()) {
+        if (name.find(part) == std::string::npos) continue;
+        if (found != nullptr) throw std::logic_error("several kernels have " + part + " in their names");
+        found = kernel;
+    }
+    if (found == nullptr) throw std::logic_error("no kernel has " + part + " in its name");
+    return *found;
+}
 
 void meet(const Meeting& brought) {
     Warp::Lane& lane = warp.lanes[warp.running];
@@ -85,9 +106,9 @@ std::uint32_t brought_by(std::uint32_t lane) {
     return warp.values[lane];
 }
 
-void run_grid(const Entry& entry, const std::uint8_t* parameter, std::uint32_t blocks, std::uint32_t block_threads) {
-    warp.entry = &entry;
-    warp.parameter = parameter;
+void run_grid(const Kernel& kernel, void* const* parameters, std::uint32_t blocks, std::uint32_t block_threads) {
+    warp.kernel = &kernel;
+    warp.parameters = parameters;
     thread.ntid = block_threads;
     thread.nctaid = blocks;
     for (thread.ctaid = 0; thread.ctaid < blocks; ++thread.ctaid) {

@@ -3,8 +3,7 @@
     translate.py IN.ptx OUT.cpp
 
 Each instruction becomes a call of the function of its name, dots as underscores, in instructions.h: an instruction that is not
-there does not compile, so that nothing is guessed. Each kernel is entered into a table by the numbers in its name
-(`run<features, kernel>`). See NVIDIA, "Parallel Thread Execution ISA".
+there does not compile, so that nothing is guessed. Kernels are found by their names (find_kernel). See NVIDIA, "Parallel Thread Execution ISA".
 """
 import re
 import sys
@@ -169,18 +168,18 @@ def translate(text):
         if not rest.startswith(";") and not rest.startswith(".noreturn"):
             functions.append((head, body(enclosed(text, found.end()))))
     for found in re.finditer(r"\.entry\s+([\w$]+)\s*\(([^)]*)\)", text):
-        features, kernel = map(int, re.search(r"runILm(\d+)ELm(\d+)E", found[1]).groups())
-        (parameter, _), = parameters(found[2])
-        head = f"static void entry_{features}_{kernel}(const std::uint8_t* {parameter})"
-        kernels.append((features, kernel))
+        taken = [n for n, _ in parameters(found[2])]
+        head = f"static void {name(found[1])}({', '.join(f'const std::uint8_t* {n}' for n in taken)})"
+        kernels.append((name(found[1]), len(taken)))
         functions.append((head, body(enclosed(text, found.end()))))
     lines = ['#include "tests/gpu/ptx/instructions.h"', "namespace raypool::ptx {", "namespace {", *constants,
              *(head + ";" for head in prototypes)]
     for head, code in functions:
         lines += [head + " {", *("    " + line for line in code), "}"]
+    for kernel, count in kernels:
+        passed = ", ".join(f"static_cast<const std::uint8_t*>(p[{i}])" for i in range(count))
+        lines.append(f'const Kernel k_{kernel}("{kernel}", [](void* const* p) {{ {kernel}({passed}); }});')
     lines.append("}")
-    lines.append("const std::vector<Entry> kEntries{" +
-                 ", ".join(f"{{{f}, {k}, entry_{f}_{k}}}" for f, k in kernels) + "};")
     lines.append("}")
     return "\n".join(lines) + "\n"
 
