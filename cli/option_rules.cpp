@@ -23,7 +23,7 @@ struct OptionRule {
     std::string_view option;
     Rule rule;
     std::string_view other;
-    std::string_view value;  ///< of the other option; empty: any
+    std::string_view value;  ///< of the other option, or several with " or " between; empty: any
     std::string_view why;    ///< may be empty
 };
 
@@ -33,10 +33,8 @@ constexpr std::string_view kListsOnly = "the studies are only listed then";
 
 constexpr OptionRule kRules[] = {
     {"render", "--pool-scope", Rule::Needs, "--engine", "wavefront", ""},
-    {"render", "--pool-rays", Rule::Excludes, "--engine", "recursive", "it has no pool"},
-    {"render", "--pool-rays", Rule::Excludes, "--engine", "iterative", "it has no pool"},
-    {"render", "--pool-rays", Rule::Excludes, "--gpu-form", "mega", "it has no pool"},
-    {"render", "--pool-rays", Rule::Excludes, "--gpu-form", "mega-regenerate", "it has no pool"},
+    {"render", "--pool-rays", Rule::Needs, "--engine", "wavefront or gpu", ""},
+    {"render", "--pool-rays", Rule::Excludes, "--gpu-form", "mega or mega-regenerate", "these have no pool"},
     {"render", "--gpu-form", Rule::Needs, "--engine", "gpu", ""},
     {"render", "--pool-batch", Rule::Needs, "--engine", "wavefront", ""},
     {"render", "--refill", Rule::Needs, "--engine", "wavefront", ""},
@@ -70,6 +68,7 @@ constexpr OptionRule kRules[] = {
     {"study", "--repeats", Rule::Needs, "name", "", kListsOnly},
     {"study", "--seed", Rule::Needs, "name", "", kListsOnly},
     {"study", "--quiet", Rule::Needs, "name", "", kListsOnly},
+    {"study", "--only", Rule::Needs, "name", "", kListsOnly},
     {"study", "--scene", Rule::Excludes, "name", "stability", "its cases are scenes of their own"},
     {"study", "--scene", Rule::Excludes, "name", "scene-size", "its scenes are generated"},
     {"study", "--scene", Rule::Excludes, "name", "traversal", "its scenes are generated"},
@@ -81,10 +80,20 @@ constexpr OptionRule kRules[] = {
     {"study", "--threads", Rule::Excludes, "name", "traversal", "it traces in one"},
 };
 
-bool is_given(const CLI::App& command, std::string_view option, std::string_view value) {
-    if (option == "--engine") return engine_in_effect(command) == value;
+bool is_one_of(std::string_view value, std::string_view values) {
+    constexpr std::string_view kOr = " or ";
+    for (;;) {
+        const std::size_t end = values.find(kOr);
+        if (values.substr(0, end) == value) return true;
+        if (end == std::string_view::npos) return false;
+        values.remove_prefix(end + kOr.size());
+    }
+}
+
+bool is_given(const CLI::App& command, std::string_view option, std::string_view values) {
+    if (option == "--engine") return is_one_of(engine_in_effect(command), values);
     const CLI::Option& found = *command.get_option(std::string(option));
-    return found.count() > 0 && (value.empty() || found.results().front() == value);
+    return found.count() > 0 && (values.empty() || is_one_of(found.results().front(), values));
 }
 
 }  // namespace

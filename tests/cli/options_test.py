@@ -20,6 +20,10 @@ class OptionThatDoesNothing(CommandTest):
             for engine in (("--cost-image", "cost.pfm"), ("--engine", "recursive"), ("--engine", "iterative")):
                 self.assert_idle("render", "scene.json", *engine, option, value, named=[option, "--engine wavefront"])
 
+    def test_of_a_gpu_is_refused_by_engines_of_the_processor(self):
+        for engine in ((), POOL, ("--engine", "recursive")):
+            self.assert_idle("render", "scene.json", *engine, "--gpu-form", "wave", named=["--gpu-form", "--engine gpu"])
+
     def test_of_a_shared_pool_is_refused_by_the_pools_of_threads(self):
         for option in ("--append", "--pool-batch"):
             for scope in ((), ("--pool-scope", "thread")):
@@ -54,7 +58,7 @@ class OptionThatDoesNothing(CommandTest):
     def test_of_a_study_is_refused_without_the_study_or_by_one_that_does_not_have_it(self):
         for option, value in (("--quick", None), ("--out", "folder"), ("--fresh", None), ("--scene", "cornell"),
                               ("--width", 16), ("--spp", 1), ("--depth", 3), ("--threads", 1), ("--repeats", 1),
-                              ("--seed", 1), ("--quiet", None)):
+                              ("--seed", 1), ("--quiet", None), ("--only", "x")):
             self.assert_idle("study", option, *([] if value is None else [value]), named=[option, "name"])
         for study, option, value in (("stability", "--scene", "cornell"), ("scene-size", "--scene", "cornell"),
                                      ("traversal", "--scene", "cornell"), ("traversal", "--depth", 3),
