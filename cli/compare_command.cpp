@@ -74,7 +74,7 @@ std::vector<Contender> contenders([[maybe_unused]] const CompiledScene<float>& s
         list.push_back({std::move(name), std::move(step), engine, check, std::move(pool), {}, {}, {}, {}, {}});
     };
     for (const EngineEntry& entry : engines().entries())  // pools come below, a rung each
-        if (!entry.has_pool && entry.is_here()) add(entry.name, entry.description, entry.make({}), nullptr);
+        if (!entry.has_pool && entry.can_render(settings)) add(entry.name, entry.description, entry.make({}), nullptr);
     for (const wavefront::Rung& rung : wavefront::ladder(settings.threads))
         add(rung.name, rung.step, std::make_shared<wavefront::WavefrontEngine>(rung.pool), to_json(rung.pool));
 #ifdef RAYPOOL_HAS_EMBREE

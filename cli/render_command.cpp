@@ -26,6 +26,7 @@
 #include "core/image/image_file.h"
 #include "core/runtime/environment.h"
 #include "core/runtime/trace.h"
+#include "gpu/engine.h"
 
 namespace raypool::cli {
 
@@ -155,7 +156,7 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;
     const std::size_t record_bytes = stored_record_bytes(scene, record.settings, record.precision);
     record.pool = pool_settings(options.pool, record_bytes, record.settings.threads);
-    record.gpu = gpu_settings(options, record_bytes);
+    record.gpu = gpu_settings(options, gpu::pool_record_bytes(needed_features(scene_features(scene), record.settings)));
     if (!options.checkpoint.file.empty() && engines().find(record.engine).has_pool &&
         adds_reals(record.pool.accumulator))
         throw InputError("--accumulator: atomic-float and atomic-double have no exact sums to keep in a --checkpoint");

@@ -50,9 +50,8 @@ json settings_json(const RenderRecord& record) {
     }
     if (record.target_error > 0) result["target_error"] = record.target_error;
     if (engines().find(record.engine).has_pool) result["pool"] = to_json(record.pool);
-    if (record.engine == "gpu")
-        result["gpu"] = {{"form", gpu::kFormNames[static_cast<std::size_t>(record.gpu.form)]},
-                         {"rays", record.gpu.capacity}};
+    if (record.engine == "gpu") result["gpu"]["form"] = gpu::kFormNames[static_cast<std::size_t>(record.gpu.form)];
+    if (record.engine == "gpu" && record.gpu.form == gpu::Form::Wave) result["gpu"]["rays"] = record.gpu.capacity;
     return result;
 }
 

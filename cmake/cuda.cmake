@@ -4,24 +4,34 @@
 # -ftz=true                          denormal numbers are zero, as in every thread of an engine
 # -prec-div=true -prec-sqrt=true     division and square root are rounded to nearest
 # Not here, ever: --use_fast_math. tests/gpu/ptx_opcodes_test.py holds what nvcc makes of it.
-find_program(RAYPOOL_NVCC nvcc HINTS /usr/local/cuda/bin)
-if(RAYPOOL_NVCC)
-  execute_process(COMMAND ${RAYPOOL_NVCC} --version OUTPUT_VARIABLE nvcc_version)
-  string(REGEX MATCH "release ([0-9]+)" _ "${nvcc_version}")
-  if(CMAKE_MATCH_1 LESS 12)
-    message(STATUS "${RAYPOOL_NVCC} is older than CUDA 12: the GPU engine is not built")
-    set(RAYPOOL_NVCC "")
+option(RAYPOOL_BUILD_GPU "Build the GPU engine where nvcc is" ON)
+set(RAYPOOL_NVCC "")
+if(RAYPOOL_BUILD_GPU)
+  find_package(CUDAToolkit 12 QUIET)
+endif()
+if(CUDAToolkit_FOUND AND CUDAToolkit_NVCC_EXECUTABLE AND TARGET CUDA::cudart_static)
+  # nvcc takes the compilers of its own time alone.
+  file(WRITE ${PROJECT_BINARY_DIR}/nvcc_trial.cu "#include <array>\n__global__ void trial() {}\n")
+  execute_process(COMMAND ${CUDAToolkit_NVCC_EXECUTABLE} -std=c++20 -ccbin ${CMAKE_CXX_COMPILER} -arch=compute_80 -cubin
+                          -code=sm_80 ${PROJECT_BINARY_DIR}/nvcc_trial.cu -o ${PROJECT_BINARY_DIR}/nvcc_trial.cubin
+                  RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+  if(NOT failed)
+    set(RAYPOOL_NVCC ${CUDAToolkit_NVCC_EXECUTABLE})
   endif()
+endif()
+if(RAYPOOL_NVCC)
+  message(STATUS "The GPU engine is built by ${RAYPOOL_NVCC}")
 else()
-  message(STATUS "nvcc is not here: the GPU engine is not built")
+  message(STATUS "The GPU engine is not built: no nvcc of CUDA 12 or later that takes this compiler")
 endif()
 
 set(RAYPOOL_NVCC_ROUNDING -fmad=false -ftz=true -prec-div=true -prec-sqrt=true)
 set(RAYPOOL_NVCC_FLAGS -std=c++20 --expt-relaxed-constexpr -diag-suppress 20012,20013,20015 -Werror all-warnings
     -DEIGEN_DONT_PARALLELIZE -DEIGEN_DONT_VECTORIZE $<$<BOOL:${RAYPOOL_ONE_FEATURE_SET}>:-DRAYPOOL_ONE_FEATURE_SET>
-    -I ${PROJECT_SOURCE_DIR} -isystem /usr/include/eigen3)
-# Which chips the kernels are compiled for: the last of them also as PTX, for those to come.
-set(RAYPOOL_CUDA_ARCHS "80;86;89;90" CACHE STRING "Compute capabilities that the GPU engine is compiled for")
+    -I ${PROJECT_SOURCE_DIR} -isystem $<JOIN:$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>, -isystem >)
+# One virtual architecture, whose PTX the tests prove; and the chips for which ptxas makes machine code of it.
+set(RAYPOOL_NVCC_ARCH 80)
+set(RAYPOOL_CUDA_CHIPS "80;86;89;90" CACHE STRING "Compute capabilities that the GPU engine has machine code for")
 
 # raypool_nvcc(SOURCE OUT flags...)
 function(raypool_nvcc source out)
@@ -32,11 +42,10 @@ endfunction()
 
 # raypool_nvcc_object(SOURCE OUT): for all chips, to be linked with raypool_cuda.
 function(raypool_nvcc_object source out)
-  foreach(arch ${RAYPOOL_CUDA_ARCHS})
-    list(APPEND codes -gencode=arch=compute_${arch},code=sm_${arch})
-  endforeach()
-  list(GET RAYPOOL_CUDA_ARCHS -1 newest)
-  list(APPEND codes -gencode=arch=compute_${newest},code=compute_${newest})
-  raypool_nvcc(${source} ${out} -O3 ${RAYPOOL_NVCC_ROUNDING} -ccbin ${CMAKE_CXX_COMPILER} -Xcompiler -march=${RAYPOOL_ARCH} ${codes} -c)
+  list(TRANSFORM RAYPOOL_CUDA_CHIPS PREPEND sm_ OUTPUT_VARIABLE codes)
+  list(APPEND codes compute_${RAYPOOL_NVCC_ARCH})  # for chips to come
+  list(JOIN codes , codes)
+  raypool_nvcc(${source} ${out} -O3 ${RAYPOOL_NVCC_ROUNDING} -ccbin ${CMAKE_CXX_COMPILER} -Xcompiler -march=${RAYPOOL_ARCH}
+    -gencode=arch=compute_${RAYPOOL_NVCC_ARCH},code=[${codes}] -c)
   set_source_files_properties(${out} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
 endfunction()

@@ -74,6 +74,17 @@ class CudaDevice : public Device {
         check(cudaMemGetInfo(&free, &total), "cannot ask for the free memory");
         return free;
     }
+    /// A launch without work: no path is left, no record lives.
+    void make_ready(std::span<const Kernel> kernels, std::size_t features) override {
+        Counters* counters = nullptr;
+        check(cudaMalloc(reinterpret_cast<void**>(&counters), sizeof(Counters)), "cannot take memory");
+        check(cudaMemset(counters, 0, sizeof(Counters)), "cannot clear memory");
+        Launch nothing;
+        nothing.counters = counters;
+        for (const Kernel kernel : kernels) launch(kernel, features, nothing, 0);
+        (void)kernel_seconds();
+        check(cudaFree(counters), "cannot release memory");
+    }
     [[nodiscard]] void* allocate(std::size_t bytes) override {
         void* memory = nullptr;
         check(cudaMalloc(&memory, bytes), "cannot take memory");
@@ -88,12 +99,12 @@ class CudaDevice : public Device {
     }
 
     void launch(Kernel kernel, std::size_t features, const Launch& launch, std::int64_t items) override {
+        const void* code = device_kernel(kernel, features);
+        const unsigned block_count = blocks(kernel, features, items);
         if (!is_timed_) check(cudaEventRecord(begin_), "cannot begin");
         is_timed_ = true;
-        const void* code = device_kernel(kernel, features);
         std::array<void*, 1> arguments{const_cast<Launch*>(&launch)};
-        check(cudaLaunchKernel(code, dim3(blocks(kernel, features, items)), dim3(kBlockThreads), arguments.data(), 0,
-                               nullptr),
+        check(cudaLaunchKernel(code, dim3(block_count), dim3(kBlockThreads), arguments.data(), 0, nullptr),
               "cannot launch a kernel");
     }
     [[nodiscard]] double kernel_seconds() override {

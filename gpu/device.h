@@ -28,6 +28,9 @@ class Device {
     /// Of its memory.
     [[nodiscard]] virtual std::size_t free_bytes() const = 0;
 
+    /// Loads kernels of a feature set, with what memory they take for themselves, so that no launch is the first.
+    virtual void make_ready(std::span<const Kernel> kernels, std::size_t features) = 0;
+
     /// Throws where there is not as much.
     [[nodiscard]] virtual void* allocate(std::size_t bytes) = 0;
     virtual void release(void* memory) = 0;

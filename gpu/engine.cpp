@@ -36,18 +36,28 @@ Columns columns_of(std::size_t features) {
                                              []<Features compiled>() { return Columns::of<compiled>(); });
 }
 
+/// Of the pixels of a unit: at most all of them.
+std::size_t pixel_list_bytes(const SceneView<float>& scene) {
+    return static_cast<std::size_t>(scene.pixel_count()) * sizeof(std::uint32_t);
+}
+
 class GpuSession : public RenderSession {
   public:
     GpuSession(const CompiledScene<float>& scene, const RenderSettings& settings, Framebuffer& framebuffer,
-               const GpuSettings& gpu, std::unique_ptr<Device> device)
-        : settings_(settings), framebuffer_(framebuffer), form_(gpu.form), device_(std::move(device)) {
-        const double begin = wall_seconds();
+               const GpuSettings& gpu, const DeviceMaker& device)
+        : begin_s_(wall_seconds()),
+          settings_(settings),
+          framebuffer_(framebuffer),
+          form_(gpu.form),
+          device_(device(settings.threads)) {
         const Features needed = needed_features(scene.features, settings);
         features_ = compiled_features_index(needed, kFirstFeatures) - kFirstFeatures;
         const Columns columns = columns_of(features_);
         const auto capacity = static_cast<std::size_t>(form_ == Form::Wave ? gpu.capacity : 0);
 
-        report_.memory_bytes = DeviceScene::bytes(scene) + framebuffer.sums().size_bytes() + columns.bytes(capacity);
+        report_.memory_bytes = DeviceScene::bytes(scene) + framebuffer.sums().size_bytes() + columns.bytes(capacity) +
+                               pixel_list_bytes(scene);
+        device_->make_ready(kernels(), features_);  // which takes memory of its own
         const std::size_t free = device_->free_bytes();
         if (report_.memory_bytes > free)
             throw InputError(
@@ -81,7 +91,7 @@ class GpuSession : public RenderSession {
         own->capacity = static_cast<std::int64_t>(capacity);
         report_.engine = own;
         report_.threads.resize(1);
-        report_.seconds = report_.setup_s = wall_seconds() - begin;
+        report_.seconds = report_.setup_s = wall_seconds() - begin_s_;
     }
 
   private:
@@ -136,6 +146,13 @@ class GpuSession : public RenderSession {
         }
     }
 
+    /// Those of the form.
+    [[nodiscard]] std::vector<Kernel> kernels() const {
+        if (form_ == Form::Mega) return {Kernel::Mega};
+        if (form_ == Form::MegaRegenerate) return {Kernel::MegaRegenerate};
+        return {Kernel::Generate, Kernel::BeginRound, Kernel::Intersect, Kernel::Shade, Kernel::Shadow};
+    }
+
     void count_progress(std::int64_t paths) {
         if (settings_.progress != nullptr) settings_.progress->paths += paths - finished_;
         finished_ = paths;
@@ -173,6 +190,7 @@ class GpuSession : public RenderSession {
     }
     void clear_sums() { sums_.copy_in(std::vector<std::int64_t>(sums_.size())); }
 
+    double begin_s_;
     RenderSettings settings_;
     Framebuffer& framebuffer_;
     Form form_;
@@ -195,16 +213,23 @@ void refuse(bool is_asked, const char* option, const char* why) {
 
 }  // namespace
 
+std::size_t pool_record_bytes(const Features& needed) {
+    return columns_of(compiled_features_index(needed, kFirstFeatures) - kFirstFeatures).bytes(1);
+}
+
 void add_engines(EngineRegistry& registry, const DeviceMaker& device, const std::function<bool()>& has_device) {
-    registry.add({.name = "gpu",
-                  .description = "the same kernels on a GPU",
-                  .keeps_costs = false,
-                  .has_pool = false,
-                  .is_here = has_device,
-                  .make = [device](const std::any& options) {
-                      const auto* gpu = std::any_cast<GpuSettings>(&options);
-                      return std::make_unique<GpuEngine>(gpu == nullptr ? GpuSettings{} : *gpu, device);
-                  }});
+    registry.add(
+        {.name = "gpu",
+         .description = "the same kernels on a GPU",
+         .keeps_costs = false,
+         .has_pool = false,
+         .can_render =
+             [has_device](const RenderSettings& settings) { return settings.split_depth == 0 && has_device(); },
+         .make =
+             [device](const std::any& options) {
+                 const auto* gpu = std::any_cast<GpuSettings>(&options);
+                 return std::make_unique<GpuEngine>(gpu == nullptr ? GpuSettings{} : *gpu, device);
+             }});
 }
 
 const GpuReport& gpu_report(const RenderReport& report) {
@@ -225,7 +250,7 @@ std::unique_ptr<RenderSession> GpuEngine::begin(const CompiledScene<float>& scen
     refuse(settings.cost_image != nullptr, "--cost-image", "which does not know what a pixel costs");
     refuse(settings.count_work, "--count-work", "which counts no tests");
     refuse(settings.trace != nullptr, "--trace", "whose threads are too many to be drawn");
-    return std::make_unique<GpuSession>(scene, settings, framebuffer, gpu_, device_(settings.threads));
+    return std::make_unique<GpuSession>(scene, settings, framebuffer, gpu_, device_);
 }
 
 std::unique_ptr<RenderSession> GpuEngine::begin(const CompiledScene<double>&, const RenderSettings&,

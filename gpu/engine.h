@@ -35,6 +35,10 @@ class GpuEngine : public Engine {
     DeviceMaker device_;
 };
 
+/// What the pool of Form::Wave takes for each of its records: two of them, a hit, and a shadow ray where lights are
+/// sampled. `needed` are a scene's features (needed_features()).
+std::size_t pool_record_bytes(const Features& needed);
+
 /// Its options are GpuSettings.
 void add_engines(EngineRegistry& registry, const DeviceMaker& device, const std::function<bool()>& has_device);
 

@@ -36,6 +36,7 @@ class HostDevice : public Device {
 
     [[nodiscard]] std::string name() const override { return "the host"; }
     [[nodiscard]] std::size_t free_bytes() const override { return available_memory(); }
+    void make_ready(std::span<const Kernel>, std::size_t) override {}
     [[nodiscard]] void* allocate(std::size_t bytes) override { return ::operator new(bytes, kAlign); }
     void release(void* memory) override { ::operator delete(memory, kAlign); }
     void copy_in(void* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }

@@ -221,13 +221,13 @@ class KernelRun {
         store<features>(launch_.wave.records[pool], launch_.wave.capacity, i, record);
     }
 
-    /// Adds what this thread counted.
+    /// Adds what this thread counted; for all threads of a warp. What is wrong with samples is rare.
     RAYPOOL_INLINE void report() {
         const auto add_if = [&](auto* to, auto value) {
             if (value != 0) thread_.add(to, static_cast<std::remove_reference_t<decltype(*to)>>(value));
         };
-        add_if(&counters_.segments, segments_);
-        add_if(&counters_.shadow_rays, shadow_rays_);
+        thread_.add_all(&counters_.segments, segments_);
+        thread_.add_all(&counters_.shadow_rays, shadow_rays_);
         const SampleStatistics& statistics = converter_.statistics();
         add_if(&counters_.non_finite, statistics.non_finite);
         add_if(&counters_.clamped, statistics.clamped);

@@ -26,7 +26,7 @@ struct Counters {
 /// The pools of Form::Wave: columns of 32-bit words, as long as the capacity each.
 struct WaveMemory {
     std::uint32_t capacity = 0;
-    std::uint32_t* records[2] = {nullptr, nullptr};  ///< of PathState
+    std::uint32_t* records[2] = {nullptr, nullptr};  ///< of RayRecord<float>
     std::uint32_t* hits = nullptr;                   ///< of Hit<float>
     std::uint32_t* shadow_rays = nullptr;            ///< of ShadowRay; null where lights are not sampled
 };

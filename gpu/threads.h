@@ -29,6 +29,10 @@ struct HostThread {
     }
     /// For all threads of a warp: whether it is so for any of them.
     [[nodiscard]] bool any(bool is_so) const { return is_so; }
+    /// For all threads of a warp: adds what all of them bring, at once.
+    void add_all(std::uint64_t* to, std::uint64_t value) const {
+        if (value != 0) add(to, value);
+    }
 };
 
 #ifdef __CUDACC__
@@ -61,6 +65,10 @@ struct DeviceThread {
         return first + static_cast<T>(__popc(wanted & ((1U << lane) - 1)));
     }
     [[nodiscard]] __device__ bool any(bool is_so) const { return __any_sync(kAll, is_so) != 0; }
+    __device__ void add_all(std::uint64_t* to, std::uint64_t value) const {
+        for (int apart = kWarp / 2; apart > 0; apart /= 2) value += __shfl_xor_sync(kAll, value, apart);
+        if (threadIdx.x % kWarp == 0 && value != 0) add(to, value);
+    }
 
   private:
     static constexpr unsigned kAll = 0xffffffffU;

@@ -13,7 +13,6 @@ namespace raypool::studies {
 namespace {
 
 using wavefront::RayColumns;
-using RayRecord;
 
 /// The survivors of each register of records.
 template <class Real>

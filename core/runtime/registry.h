@@ -20,8 +20,8 @@ struct EngineEntry {
     std::string description;   ///< in a line, for listings
     bool keeps_costs = false;  ///< fills RenderSettings::cost_image
     bool has_pool = false;     ///< works on pools of ray records, and reports rounds
-    /// Whether this machine has what the engine renders on.
-    std::function<bool()> is_here = [] { return true; };
+    /// Whether it can carry out the settings, on this machine: it has what the engine renders on.
+    std::function<bool(const RenderSettings&)> can_render = [](const RenderSettings&) { return true; };
     /// `options` are of the engine's own type, or empty: its defaults.
     std::function<std::unique_ptr<Engine>(const std::any& options)> make;
 };

@@ -1,12 +1,16 @@
 // The bodies of the GPU's kernels, run by the host, make the image of every other engine.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
+#include <algorithm>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/image/cost_image.h"
+#include "core/runtime/trace.h"
 #include "gpu/device_scene.h"
 #include "gpu/host_device.h"
 #include "tests/gpu/forms.h"
@@ -99,15 +103,49 @@ TEST(GpuSession, RefusesWhatItCannotDoByName) {
     RenderSettings counts;
     counts.count_work = true;
     EXPECT_NE(refusal(counts).find("--count-work"), std::string::npos);
+    Trace trace;
+    RenderSettings has_trace;
+    has_trace.trace = &trace;
+    EXPECT_NE(refusal(has_trace).find("--trace"), std::string::npos);
     const CompiledScene<double> in_double = compile<double>(small_scene("paper", 16));
     EXPECT_THROW((void)engine.begin(in_double, {}, framebuffer), InputError);
 }
 
-TEST(GpuSession, RefusesAPoolThatDoesNotFit) {
+/// The host with a megabyte of memory.
+class SmallDevice : public Device {
+  public:
+    [[nodiscard]] std::string name() const override { return "a small device"; }
+    [[nodiscard]] std::size_t free_bytes() const override { return 1'000'000; }
+    void make_ready(std::span<const Kernel> kernels, std::size_t features) override {
+        host_->make_ready(kernels, features);
+    }
+    [[nodiscard]] void* allocate(std::size_t bytes) override { return host_->allocate(bytes); }
+    void release(void* memory) override { host_->release(memory); }
+    void copy_in(void* to, const void* from, std::size_t bytes) override { host_->copy_in(to, from, bytes); }
+    void copy_out(void* to, const void* from, std::size_t bytes) override { host_->copy_out(to, from, bytes); }
+    void launch(Kernel kernel, std::size_t features, const Launch& launch, std::int64_t items) override {
+        host_->launch(kernel, features, launch, items);
+    }
+    [[nodiscard]] double kernel_seconds() override { return host_->kernel_seconds(); }
+    void begin_fetch(int place, const Counters* counters) override { host_->begin_fetch(place, counters); }
+    [[nodiscard]] Counters fetched(int place) override { return host_->fetched(place); }
+
+  private:
+    std::unique_ptr<Device> host_ = host_device(1);
+};
+
+TEST(GpuSession, RefusesAPoolThatDoesNotFitWithBothFigures) {
     const CompiledScene<float> scene = compile<float>(small_scene("paper", 16));
     Framebuffer framebuffer(scene.width, scene.height, FixedPoint::make(1, 1));
-    const GpuEngine engine({Form::Wave, GpuSettings::kMostRecords}, host_device);
-    EXPECT_THROW((void)engine.begin(scene, {}, framebuffer), InputError);
+    const auto small = [](int) { return std::make_unique<SmallDevice>(); };
+    EXPECT_NO_THROW((void)GpuEngine({Form::Wave, 1000}, small).begin(scene, {}, framebuffer));
+    try {
+        (void)GpuEngine({Form::Wave, 1'000'000}, small).begin(scene, {}, framebuffer);
+        ADD_FAILURE() << "not refused";
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("--pool-rays"));
+        EXPECT_THAT(error.what(), testing::HasSubstr(" MB, of 1.0 MB of the memory of a small device"));
+    }
 }
 
 TEST(DeviceScene, HasACopyOfEveryTable) {
@@ -125,10 +163,15 @@ TEST(DeviceScene, HasACopyOfEveryTable) {
 
         const auto device = host_device(1);
         const DeviceScene copy(*device, scene);
-        std::vector<const void*> copies;
-        SceneView<float>::for_each_span(copy.view(), [&](const auto& rows) { copies.push_back(rows.data()); });
-        for (std::size_t k = 0; k < tables.size(); ++k)
-            EXPECT_TRUE(copies[k] == nullptr || copies[k] != tables[k]) << name << ", table " << k;
+        std::vector<std::span<const std::byte>> originals;
+        SceneView<float>::for_each_span(scene, [&](const auto& rows) { originals.push_back(std::as_bytes(rows)); });
+        auto original = originals.begin();
+        SceneView<float>::for_each_span(copy.view(), [&](const auto& rows) {
+            const auto bytes = std::as_bytes(rows);
+            EXPECT_TRUE(std::ranges::equal(bytes, *original)) << name;
+            EXPECT_TRUE(bytes.empty() || bytes.data() != original->data()) << name;
+            ++original;
+        });
     }
 }
 

@@ -18,6 +18,7 @@ class PtxDevice : public Device {
   public:
     [[nodiscard]] std::string name() const override { return "translated PTX"; }
     [[nodiscard]] std::size_t free_bytes() const override { return std::size_t{1} << 32; }
+    void make_ready(std::span<const Kernel>, std::size_t) override {}
     [[nodiscard]] void* allocate(std::size_t bytes) override { return ::operator new(bytes, std::align_val_t(64)); }
     void release(void* memory) override { ::operator delete(memory, std::align_val_t(64)); }
     void copy_in(void* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }

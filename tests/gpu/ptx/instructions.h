@@ -54,18 +54,24 @@ inline void unpack(std::uint64_t value, std::uint32_t& low, std::uint32_t& high)
 }
 
 // Warps.
-inline std::uint32_t vote_sync_ballot_b32(bool is_so, std::uint32_t mask) {
-    meet({"ballot", is_so ? 1U : 0U, mask});
+inline std::uint32_t vote_sync_ballot_b32(bool is_so, std::uint32_t mask, std::uint32_t place) {
+    meet({place, is_so ? 1U : 0U, mask});
     std::uint32_t bits = 0;
     for (std::uint32_t lane = 0; lane < 32; ++lane) bits |= (brought_by(lane) & 1U) << lane;
     return bits;
 }
-inline bool vote_sync_any_pred(bool is_so, std::uint32_t mask) {
-    return vote_sync_ballot_b32(is_so, mask) != 0;
+inline bool vote_sync_any_pred(bool is_so, std::uint32_t mask, std::uint32_t place) {
+    return vote_sync_ballot_b32(is_so, mask, place) != 0;
 }
-inline std::uint32_t shfl_sync_idx_b32(std::uint32_t value, std::uint32_t from, std::uint32_t, std::uint32_t mask) {
-    meet({"shuffle", value, mask});
+inline std::uint32_t shfl_sync_idx_b32(std::uint32_t value, std::uint32_t from, std::uint32_t, std::uint32_t mask,
+                                       std::uint32_t place) {
+    meet({place, value, mask});
     return brought_by(from & 31U);
+}
+inline std::uint32_t shfl_sync_bfly_b32(std::uint32_t value, std::uint32_t apart, std::uint32_t, std::uint32_t mask,
+                                        std::uint32_t place) {
+    meet({place, value, mask});
+    return brought_by(lane_number() ^ apart);
 }
 
 // Memory that is shared. No other thread runs meanwhile.

@@ -62,14 +62,13 @@ bool advance(std::uint32_t first_tid) {
         if (!warp.lanes[i].is_over) living |= 1U << i;
     }
     warp.values = {};
-    const char* name = nullptr;
+    const Meeting* first = nullptr;
     for (std::uint32_t i = 0; i < kLanes; ++i) {
         if ((living >> i & 1U) == 0) continue;
         const Meeting& brought = warp.lanes[i].brought;
-        if (name == nullptr) name = brought.name;
-        if (std::string(name) != brought.name || (brought.mask & living) != living)
-            throw std::logic_error("the lanes of a warp do not meet: one " + std::string(brought.name) + ", another " +
-                                   name);
+        if (first == nullptr) first = &brought;
+        if (first->place != brought.place || (brought.mask & living) != living)
+            throw std::logic_error("the lanes of a warp do not meet");
         warp.values[i] = brought.value;
     }
     return living != 0;
@@ -104,6 +103,9 @@ void meet(const Meeting& brought) {
 }
 std::uint32_t brought_by(std::uint32_t lane) {
     return warp.values[lane];
+}
+std::uint32_t lane_number() {
+    return warp.running;
 }
 
 void run_grid(const Kernel& kernel, void* const* parameters, std::uint32_t blocks, std::uint32_t block_threads) {

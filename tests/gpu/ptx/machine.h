@@ -32,12 +32,14 @@ void run_grid(const Kernel& kernel, void* const* parameters, std::uint32_t block
 
 /// What a lane brings to a vote or a shuffle. Returns once all lanes are there; then brought_by(i) is lane i's value.
 struct Meeting {
-    const char* name;
+    std::uint32_t place;  ///< in the program
     std::uint32_t value;
     std::uint32_t mask;
 };
 void meet(const Meeting& brought);
 /// Of the lanes of the warp; those that have ended bring 0.
 std::uint32_t brought_by(std::uint32_t lane);
+/// Of the lane that runs.
+std::uint32_t lane_number();
 
 }  // namespace raypool::ptx

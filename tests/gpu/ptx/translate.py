@@ -5,6 +5,7 @@
 Each instruction becomes a call of the function of its name, dots as underscores, in instructions.h: an instruction that is not
 there does not compile, so that nothing is guessed. Kernels are found by their names (find_kernel). See NVIDIA, "Parallel Thread Execution ISA".
 """
+import itertools
 import re
 import sys
 
@@ -13,6 +14,9 @@ CPP_TYPES = {"pred": "bool", "b8": "std::uint8_t", "u8": "std::uint8_t", "s8": "
              "s32": "std::int32_t", "f32": "float", "b64": "std::uint64_t", "u64": "std::uint64_t",
              "s64": "std::int64_t", "f64": "double"}
 SIZES = {"b8": 1, "u8": 1, "b16": 2, "u16": 2, "b32": 4, "u32": 4, "f32": 4, "b64": 8, "u64": 8, "f64": 8}
+
+
+MEETINGS = itertools.count(1)
 
 
 def name(text):
@@ -99,8 +103,10 @@ def instruction(text):
         return (f"{guard}put({operand(args[0])}, pack({words}));" if packs else f"{guard}unpack({operand(args[1])}, {words});")
     if op[0] in ("mov", "cvta"):
         return f"{guard}put({operand(args[0])}, {operand(args[1])});"
-    if op[0] == "shfl" and "|" in args[0]:
+    if op[0] in ("shfl", "vote"):  # where lanes meet: each by its number
         args[0] = args[0].split("|")[0]
+        return (f"{guard}put({operand(args[0])}, "
+                f"{name(opcode)}({', '.join(map(operand, args[1:]))}, {next(MEETINGS)}));")
     return f"{guard}put({operand(args[0])}, {name(opcode)}({', '.join(map(operand, args[1:]))}));"
 
 
