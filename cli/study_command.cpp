@@ -26,7 +26,7 @@ constexpr const char* kReproduce = "reproduce";
 /// They repeat the paper together, in the order of its page.
 const std::vector<std::string> kPaperStudies{"load", "schedules", "scaling", "pool", "framebuffer"};
 /// They ask what the paper did not, and have a page of their own.
-const std::vector<std::string> kBeyondStudies{"scene-size", "traversal", "light"};
+const std::vector<std::string> kBeyondStudies{"scene-size", "traversal", "light", "gpu"};
 
 struct StudyCommand {
     std::string name;

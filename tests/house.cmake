@@ -10,7 +10,7 @@ set_tests_properties(documentation PROPERTIES LABELS slow COST 100  # begun firs
 add_test(NAME layers COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/layers_test.py ${PROJECT_SOURCE_DIR})
 set_tests_properties(layers PROPERTIES LABELS unit)
 
-foreach(name build crossover efficiency page results scene_size traversal)
+foreach(name build crossover efficiency gpu page results scene_size traversal)
   add_test(NAME analysis_${name}
            COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/analysis/${name}_test.py ${PROJECT_SOURCE_DIR})
   set_tests_properties(analysis_${name} PROPERTIES LABELS unit)

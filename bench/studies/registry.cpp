@@ -9,13 +9,14 @@ namespace raypool::studies {
 
 std::vector<Study> all_studies() {
     return {
-        load_study(),     replay_study(),         schedules_study(), scaling_study(),  ranks_study(),
-        pool_study(),     scene_size_study(),     traversal_study(), build_study(),    framebuffer_study(),
-        ladder_study(),
+        load_study(),      replay_study(),         schedules_study(),  scaling_study(),
+        ranks_study(),     pool_study(),           scene_size_study(), traversal_study(),
+        build_study(),     framebuffer_study(),    ladder_study(),     gpu_study(),
 #ifndef RAYPOOL_ONE_FEATURE_SET
         features_study(),
 #endif
-        depth_study(),    speed_accuracy_study(), light_study(),     adaptive_study(), stability_study(),
+        depth_study(),     speed_accuracy_study(), light_study(),      adaptive_study(),
+        stability_study(),
     };
 }
 

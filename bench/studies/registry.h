@@ -13,6 +13,7 @@ Study build_study();
 Study depth_study();
 Study features_study();
 Study framebuffer_study();
+Study gpu_study();
 Study ladder_study();
 Study light_study();
 Study load_study();

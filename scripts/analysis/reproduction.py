@@ -38,8 +38,8 @@ def reproduction_page(runs):
 
 
 def beyond_page(runs):
-    text = ("# Beyond the paper\n\nWhat the paper did not ask: scenes of any size, meshes of triangles and lights that are "
-            "sampled. What a pool gains there, over recursion and over a traversal that is not ours.\n\n")
+    text = ("# Beyond the paper\n\nWhat the paper did not ask: scenes of any size, meshes of triangles, lights that are "
+            "sampled, and a GPU beside a pool. What a pool gains there, over recursion and over a traversal that is not ours.\n\n")
     text += page.markdown(["claim", "ours", "verdict", "from"],
                           [[f["claim"], f["ours"], page.verdict_text(f), f"[{run['study']}]({run['study']}/summary.md)"]
                            for run in runs for f in run["findings"]]) + "\n"

@@ -64,7 +64,7 @@ class StudyTest(CommandTest):
                         self.assertIn(item, page)
                     self.assertRegex(page, r"\*\*(holds|does not hold|cannot be told here)")
                     beyond = (self.folder / "out/reproduce/beyond.md").read_text()
-                    for study in ("scene-size", "traversal", "light"):
+                    for study in ("scene-size", "traversal", "light", "gpu"):
                         self.assertIn(f"[{study}]({study}/summary.md)", beyond)
                         self.assertIn(f"## {study}", beyond)
                 else:
