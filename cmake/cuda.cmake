@@ -25,10 +25,11 @@ else()
   message(STATUS "The GPU engine is not built: no nvcc of CUDA 12 or later that takes this compiler")
 endif()
 
+get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
 set(RAYPOOL_NVCC_ROUNDING -fmad=false -ftz=true -prec-div=true -prec-sqrt=true)
 set(RAYPOOL_NVCC_FLAGS -std=c++20 --expt-relaxed-constexpr -diag-suppress 20012,20013,20015 -Werror all-warnings
     -DEIGEN_DONT_PARALLELIZE -DEIGEN_DONT_VECTORIZE $<$<BOOL:${RAYPOOL_ONE_FEATURE_SET}>:-DRAYPOOL_ONE_FEATURE_SET>
-    -I ${PROJECT_SOURCE_DIR} -isystem $<JOIN:$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>, -isystem >)
+    -I ${PROJECT_SOURCE_DIR} -isystem ${eigen})
 # One virtual architecture, whose PTX the tests prove; and the chips for which ptxas makes machine code of it.
 set(RAYPOOL_NVCC_ARCH 80)
 set(RAYPOOL_CUDA_CHIPS "80;86;89;90" CACHE STRING "Compute capabilities that the GPU engine has machine code for")

@@ -1,6 +1,7 @@
 /// A packet: one register of coherent rays (camera rays through neighbouring film points) walked down a tree together.
 #pragma once
 
+#include "core/geometry/traverse.h"
 #include "wavefront/wide_ids.h"
 
 namespace raypool::wavefront {
