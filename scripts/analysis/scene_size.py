@@ -199,9 +199,10 @@ def add_peers(summary, rows, depth):
     meshes = [(scene, here) for scene, here in places(rows, 1, depth) if where(here, way="embree-mesh-packet")]
     if not meshes:
         return
+    pairs = [(way, peer) for way, peer in PEERS if all(where(here, way=peer) for _, here in meshes)]
     table = Table(f"Ratio to path tracers over Embree, 1 thread, depth {depth}",
-                  ["scene", *(f"{'pool' if way == 'automatic' else way} to {peer}" for way, peer in PEERS)])
-    table.rows = [[scene, *(text(way_ratio(here, way, peer)) for way, peer in PEERS)] for scene, here in meshes]
+                  ["scene", *(f"{'pool' if way == 'automatic' else way} to {peer}" for way, peer in pairs)])
+    table.rows = [[scene, *(text(way_ratio(here, way, peer)) for way, peer in pairs)] for scene, here in meshes]
     summary.tables.append(table)
     least = 1.5
     found = {scene: way_ratio(here, "automatic", "embree-mesh-packet") for scene, here in meshes}
