@@ -43,6 +43,8 @@ def command_line(run):
             command += f" --{key} {options[key]}"
     if "scene_given" in options or options["scene"] != "paper":
         command += " --scene " + shell_word(options["scene"])
+    if "only" in options:
+        command += " --only " + shell_word(options["only"])
     return command
 
 

@@ -102,6 +102,7 @@ Flags and OpenMP variables are in run.json, every row in data.csv. To repeat: `r
     def test_the_command_to_repeat_it_is_one_that_a_shell_reads(self):
         def command(**options):
             return page.command_line({**RUN, "options": {**RUN["options"], **options}})
+        self.assertEqual(command(only="^100 (a|b)$"), "raypool study fake --only '^100 (a|b)$'")
         self.assertEqual(command(quick=True, width=32, seed=1), "raypool study fake --quick --width 32 --seed 1")
         self.assertEqual(command(scene_given=True), "raypool study fake --scene paper")
         for scene, word in (("a/b-1.json", "a/b-1.json"), ("", "''"), ("my scene", "'my scene'"), ("it's", "'it'\\''s'"),
