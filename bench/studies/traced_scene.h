@@ -48,7 +48,7 @@ struct TimedSearch {
 };
 
 /// Traces the rays once. Throws std::runtime_error, naming `who`, where answers of ours are others by a bit, or more
-/// than one in a thousand of Embree's.
+/// than one in a thousand of Embree's are at another distance.
 TimedSearch time_search(const RaySearch& search, const TracedRays& traced, bool is_ours, const std::string& who);
 
 }  // namespace raypool::studies

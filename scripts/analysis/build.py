@@ -126,7 +126,7 @@ def summarise(run, rows):
         "robust, so that its rays may slip through edges.",
         "SAH: how many nodes and leaves a random line through the root's box meets on average, by their areas; a leaf is a "
         "block of up to 8 triangles. Every tree is checked before its row is kept: ours and embree-sah by the same hits as "
-        "compile()'s tree, to the bit, of all rays that are timed; Embree's by at most one other hit in a thousand. Rays are "
+        "compile()'s tree, to the bit, of all rays that are timed; Embree's by at most one hit in a thousand at another distance. Rays are "
         "traced in one thread: over ours and embree-sah by single rays of ours, over Embree's scenes by Embree's.",
         "Peaks are pages that became resident, beyond vertices and which triangles have them (Embree's scenes: 12 bytes a "
         "triangle of their own for that); they say little of meshes that are small. Builds begin with memory that is fresh "
