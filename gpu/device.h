@@ -71,7 +71,6 @@ class DeviceArray {
 
     [[nodiscard]] T* data() const { return static_cast<T*>(data_); }
     [[nodiscard]] std::size_t size() const { return count_; }
-    [[nodiscard]] std::size_t bytes() const { return count_ * sizeof(T); }
     void copy_in(std::span<const T> from) {
         if (!from.empty()) device_->copy_in(data_, from.data(), from.size_bytes());
     }

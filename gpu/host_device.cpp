@@ -1,7 +1,6 @@
 #include "gpu/host_device.h"
 
 #include <array>
-#include <cstdlib>
 #include <cstring>
 #include <new>
 

@@ -18,9 +18,8 @@ inline constexpr std::array<const char*, 3> kFormNames{"mega", "mega-regenerate"
 
 struct GpuSettings {
     Form form = Form::Wave;
-    /// Records of the pool of Form::Wave, within [1, kMostRecords].
+    /// Records of the pool of Form::Wave, within [1, 2^31 - 1].
     std::int64_t capacity = std::int64_t{1} << 20;
-    static constexpr std::int64_t kMostRecords = (std::int64_t{1} << 31) - 1;
 };
 
 }  // namespace raypool::gpu

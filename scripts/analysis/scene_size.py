@@ -23,7 +23,7 @@ def grid(count, below=1):
     across = min(count, 3)
     down = -(-count // across)
     figure, axes = plt.subplots(below * down, across, figsize=(4.4 * across + 2.6, 3.6 * below * down + 0.8), sharex=True,
-                                squeeze=False)
+                                sharey=below == 1 or "row", squeeze=False)
     for axis in axes.flat:
         axis.tick_params(labelbottom=True)
     panels = [axes[below * row:below * (row + 1), column] for row in range(down) for column in range(across)]
@@ -39,8 +39,8 @@ def add_legend(figure):
     for axis in figure.axes:
         for handle, label in zip(*axis.get_legend_handles_labels()):
             named.setdefault(label, handle)
-    last = figure.axes[min(2, len(figure.axes) - 1)]
-    last.legend(named.values(), named.keys(), loc="upper left", bbox_to_anchor=(1, 1))
+    top_right = figure.axes[figure.axes[0].get_gridspec().ncols - 1]
+    top_right.legend(named.values(), named.keys(), loc="upper left", bbox_to_anchor=(1, 1))
 
 
 def panels(rows, label):
@@ -73,9 +73,8 @@ def ratio(run, rows):
         line(axis, sizes, [way_ratio(here, "automatic", shapes=size) for size in sizes], color=BLACK, marker="*",
              label="automatic")
         axis.axhline(1, color="black", linewidth=2, label="recursion")
-    top = max(axis.get_ylim()[1] for axis in figure.axes if axis.get_visible())
-    for axis in figure.axes:
-        axis.set_ylim(0, top)
+    for axis in figure.axes:  # after the last panel, since panels share an axis that stops growing here
+        axis.set_ylim(bottom=0)
     return figure
 
 
