@@ -46,7 +46,7 @@ function(raypool_nvcc_object source out)
   list(TRANSFORM RAYPOOL_CUDA_CHIPS PREPEND sm_ OUTPUT_VARIABLE codes)
   list(APPEND codes compute_${RAYPOOL_NVCC_ARCH})  # for chips to come
   list(JOIN codes , codes)
-  raypool_nvcc(${source} ${out} -O3 ${RAYPOOL_NVCC_ROUNDING} -ccbin ${CMAKE_CXX_COMPILER} -Xcompiler -march=${RAYPOOL_ARCH}
+  raypool_nvcc(${source} ${out} -O3 ${RAYPOOL_NVCC_ROUNDING} -ccbin ${CMAKE_CXX_COMPILER} -Xcompiler ${RAYPOOL_ARCH_FLAG}
     -gencode=arch=compute_${RAYPOOL_NVCC_ARCH},code=[${codes}] -c)
   set_source_files_properties(${out} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
 endfunction()

@@ -2,7 +2,10 @@
 
 #include <pthread.h>
 
+#include <cstdint>
+
 #include "core/base/error.h"
+#include "core/math/processor.h"
 
 namespace raypool::recursive {
 

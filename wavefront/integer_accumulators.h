@@ -40,7 +40,7 @@ class EightContributions {
 
     /// For i = 0, 1, 2, ... in turn.
     RAYPOOL_INLINE FixedRgb fixed(std::size_t i) {
-        if constexpr (x86::kRoundsEight && sizeof(Scalar) == sizeof(float)) {
+        if constexpr (isa::kRoundsEight && sizeof(Scalar) == sizeof(float)) {
             if (i % 8 == 0)
                 are_converted_ = i + 8 <= contributions_.count() &&
                                  convert_eight(converter_,

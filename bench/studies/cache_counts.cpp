@@ -17,6 +17,7 @@
 
 #include "bench/studies/process.h"
 #include "core/base/scratch_folder.h"
+#include "core/math/processor.h"
 #include "core/runtime/environment.h"
 
 namespace raypool::studies {
@@ -91,11 +92,7 @@ std::string commit_of(const fs::path& command) {
     return found.is_object() ? found.value(json::json_pointer("/environment/commit"), std::string()) : std::string();
 }
 
-#ifdef __AVX512F__
-constexpr bool kCanRunInValgrind = false;  ///< it knows no AVX-512
-#else
-constexpr bool kCanRunInValgrind = true;
-#endif
+constexpr bool kCanRunInValgrind = kRegisterBytes < 64;  ///< it knows no AVX-512
 
 CachegrindCommand find_command() {
     if (!has_valgrind()) return {{}, "valgrind is not installed"};

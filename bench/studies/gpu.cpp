@@ -1,9 +1,12 @@
-// The paper's Table 3: threads of a CPU against a GPU, by the width of the image.
+// The paper's Table 3: threads of a CPU against a GPU, by the width of the image; and how full each form keeps the GPU,
+// round by round.
 
 #include <set>
 
 #include <fmt/format.h>
 
+#include "bench/studies/gpu_occupancy.h"
+#include "bench/studies/path_costs.h"
 #include "bench/studies/registry.h"
 #include "bench/studies/renders.h"
 #include "gpu/engine.h"
@@ -31,6 +34,38 @@ std::vector<NamedEngine> gpu_engines() {
     return engines;
 }
 
+/// Threads that a GPU of today holds at once: 132 multiprocessors of 2048.
+constexpr std::int64_t kDeviceThreads = 132 * 2048;
+
+/// Rows of every form: which part of its warps' lanes trace a segment, round by round. Counted, on no GPU.
+void add_occupancy(std::vector<Case>& cases, const StudyOptions& options) {
+    const auto scene = study_scene(options.scene, choose(options, options.width, {48, 800}));
+    const Plan plan = plan_of(options, {2, 16}, {1, 1}, core_count());
+    const auto lengths = std::make_shared<Lazy<std::vector<std::uint32_t>>>(
+        [scene, settings = plan.settings] { return record_costs(*scene, settings).lengths_by_sample(); });
+    const std::int64_t paths = scene->compiled.pixel_count() * (plan.settings.end_sample - plan.settings.first_sample);
+    // A small image has its paths for no fewer rounds than a large one. Warps are whole.
+    const std::int64_t threads = std::min(kDeviceThreads, std::max<std::int64_t>(1, paths / 512) * 32);
+    const std::int64_t capacity = std::min(gpu::GpuSettings{}.capacity, threads);
+    for (const auto& [form, room] : {std::pair{gpu::Form::Mega, std::int64_t{0}},
+                                     {gpu::Form::MegaRegenerate, threads},
+                                     {gpu::Form::Wave, capacity}}) {
+        const std::string name = fmt::format("gpu {}", gpu::kFormNames[static_cast<std::size_t>(form)]);
+        cases.push_back({fmt::format("occupancy of {}", name), "", 1, [=, form = form, room = room] {
+                             std::vector<Cells> rows;
+                             for (const GpuRound& round : gpu_rounds(form, (*lengths)(), room))
+                                 rows.push_back({{"kind", "occupancy"},
+                                                 {"engine", name},
+                                                 {"width", scene->compiled.width},
+                                                 {"room", room == 0 ? Value() : Value(room)},
+                                                 {"round", rows.size() + 1},
+                                                 {"live", round.live},
+                                                 {"lanes", round.lanes}});
+                             return rows;
+                         }});
+    }
+}
+
 std::vector<Case> gpu_cases(const StudyOptions& options) {
     constexpr int kPapersThreads = 16;
     const Plan plan = plan_of(options, {2, 16}, {3, 5}, core_count());
@@ -48,7 +83,8 @@ std::vector<Case> gpu_cases(const StudyOptions& options) {
             const auto more = [](const RenderReport& report) {
                 const gpu::GpuReport& found = gpu::gpu_report(report);
                 const bool is_gpu = !found.device.empty();
-                return Cells{{"device", is_gpu ? Value(found.device) : Value()},
+                return Cells{{"kind", "render"},
+                             {"device", is_gpu ? Value(found.device) : Value()},
                              {"kernel_seconds", is_gpu ? Value(found.kernel_s) : Value()},
                              {"segments", report.segments()}};
             };
@@ -59,6 +95,7 @@ std::vector<Case> gpu_cases(const StudyOptions& options) {
             for (const NamedEngine& engine : {recursive_engine(), fused_pool()}) add(engine, threads);
         for (const NamedEngine& engine : gpu_engines()) add(engine, 1);
     }
+    add_occupancy(cases, options);
     return cases;
 }
 
@@ -67,9 +104,15 @@ std::vector<Case> gpu_cases(const StudyOptions& options) {
 Study gpu_study() {
     return {.name = "gpu",
             .question = "How much faster is a GPU than the threads of a CPU, by the width of the image?",
-            .columns = render_columns({{"device", ColumnType::Text, "the GPU; empty of a CPU"},
-                                       {"kernel_seconds", ColumnType::Real, "of `seconds`, while kernels ran"},
-                                       {"segments", ColumnType::Count, "rays traced"}}),
+            .columns = render_columns(
+                {{"kind", ColumnType::Text, "render, or occupancy: a round of a form, counted on no GPU"},
+                 {"device", ColumnType::Text, "the GPU; empty of a CPU"},
+                 {"kernel_seconds", ColumnType::Real, "of `seconds`, while kernels ran"},
+                 {"segments", ColumnType::Count, "rays traced"},
+                 {"room", ColumnType::Count, "of a round: threads of the device, records of the pool"},
+                 {"round", ColumnType::Count, "from 1 on; of all warps in step"},
+                 {"live", ColumnType::Count, "paths that trace a segment in it"},
+                 {"lanes", ColumnType::Count, "of the warps that have such a path"}}),
             .cases = gpu_cases};
 }
 

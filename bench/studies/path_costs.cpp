@@ -113,6 +113,16 @@ CostModel fit(const std::vector<Tally>& lines, const std::vector<double>& second
 
 }  // namespace
 
+std::vector<std::uint32_t> PathCosts::lengths_by_sample() const {
+    const auto count = static_cast<std::size_t>(samples);
+    std::vector<std::uint32_t> lengths;
+    lengths.reserve(first.size() - 1);
+    for (std::size_t sample = 0; sample < count; ++sample)
+        for (std::size_t path = sample; path + 1 < first.size(); path += count)
+            lengths.push_back(first[path + 1] - first[path]);
+    return lengths;
+}
+
 Tally PathCosts::tally(std::int64_t first_path, std::int64_t end_path) const {
     const std::uint32_t begin = first[static_cast<std::size_t>(first_path)];
     const std::uint32_t end = first[static_cast<std::size_t>(end_path)];

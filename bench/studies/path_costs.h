@@ -62,6 +62,8 @@ struct PathCosts {
     std::vector<std::uint32_t> first;  ///< segment of each path, and the end
     std::vector<SegmentTests> tests;
 
+    /// Segments of each path, all pixels of a sample before the next sample: the order of a GPU's paths.
+    [[nodiscard]] std::vector<std::uint32_t> lengths_by_sample() const;
     [[nodiscard]] Tally tally(std::int64_t first_path, std::int64_t end_path) const;
     /// Of the items that a grain cuts the image into.
     [[nodiscard]] std::vector<Tally> items(const Grain& grain) const;

@@ -44,7 +44,7 @@ enum class Halves : bool { Together, Apart };
                                         std::int64_t (&fixed)[3][8]) {
     bool is_good = true;
     for (int k = 0; k < 3; ++k)
-        is_good = is_good && x86::round_eight(channel[k], converter.scale(), converter.limit(), fixed[k]);
+        is_good = is_good && isa::round_eight(channel[k], converter.scale(), converter.limit(), fixed[k]);
     return is_good;
 }
 

@@ -60,9 +60,8 @@ WideBvh<Scalar, width> collapse(const BinaryBvh& tree) {
 
 template WideBvh<float, 4> collapse(const BinaryBvh&);  // of tests: another tree, the same hits
 template WideBvh<float, 8> collapse(const BinaryBvh&);
+template WideBvh<double, 2> collapse(const BinaryBvh&);
 template WideBvh<double, 4> collapse(const BinaryBvh&);
-#ifdef __AVX512F__
 template WideBvh<double, 8> collapse(const BinaryBvh&);
-#endif
 
 }  // namespace raypool

@@ -5,12 +5,14 @@
 /// copied to where pointers mean something else. Tables are immutable once they are made, so threads share them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/geometry/bvh.h"
 #include "core/geometry/instances.h"
+#include "core/math/processor.h"
 #include "core/math/vec.h"
 
 namespace raypool {
@@ -62,7 +64,7 @@ struct BlockTree {
 /// Children of a node, and primitives of a leaf: as many as fill a register, eight where there is a choice. Single rays
 /// test them all at once, streams and packets one by one against a register of rays.
 template <class Scalar>
-inline constexpr int kTreeWidth = sizeof(Scalar) == 4 ? 8 : kRegisterBytes / 8;
+inline constexpr int kTreeWidth = std::min(8, kRegisterBytes / static_cast<int>(sizeof(Scalar)));
 
 /// A BlockTree, seen.
 template <class BlockType, class Scalar, int width>

@@ -1,7 +1,9 @@
-/// Denormal numbers as zero: the processor's flag for it.
+/// Denormal numbers as zero: the processor's mode for it.
 #pragma once
 
-#include <immintrin.h>
+#include <cstdint>
+
+#include "core/math/processor.h"
 
 namespace raypool {
 
@@ -9,15 +11,13 @@ namespace raypool {
 /// whose throughput fades would otherwise cost hundreds of times more for light that cannot be seen.
 class FlushDenormals {
   public:
-    FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | kFlushToZero | kDenormalsAreZero); }
-    ~FlushDenormals() { _mm_setcsr(before_); }
+    FlushDenormals() : before_(floating_point_modes()) { set_floating_point_modes(before_ | kFlushDenormals); }
+    ~FlushDenormals() { set_floating_point_modes(before_); }
     FlushDenormals(const FlushDenormals&) = delete;
     FlushDenormals& operator=(const FlushDenormals&) = delete;
 
   private:
-    static constexpr unsigned kFlushToZero = 0x8000;
-    static constexpr unsigned kDenormalsAreZero = 0x0040;
-    unsigned before_;
+    std::uint64_t before_;
 };
 
 }  // namespace raypool

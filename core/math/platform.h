@@ -22,13 +22,3 @@
 #define RAYPOOL_INLINE [[gnu::always_inline]] RAYPOOL_HOST_DEVICE inline
 #endif
 
-namespace raypool {
-
-/// Of the registers that code is compiled for.
-#ifdef __AVX512F__
-inline constexpr int kRegisterBytes = 64;
-#else
-inline constexpr int kRegisterBytes = 32;
-#endif
-
-}  // namespace raypool

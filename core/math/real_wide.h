@@ -1,10 +1,12 @@
-/// The register half of core/math/real.h: std::experimental::simd of floats and doubles, on AVX2 and AVX-512.
+/// The register half of core/math/real.h: std::experimental::simd of floats and doubles, on AVX2, AVX-512 and NEON.
 #pragma once
 
 #include <experimental/simd>
 
 #include "core/math/real_scalar.h"
-#ifdef __AVX512F__
+#if defined(__aarch64__)
+#include "core/math/simd_neon.h"
+#elif defined(__AVX512F__)
 #include "core/math/simd_avx512.h"
 #else
 #include "core/math/simd_avx2.h"
@@ -36,43 +38,15 @@ struct RealTraits<Real> {
     static constexpr int kLanes = Real::size();
 };
 
-template <class Scalar, std::size_t bytes>
-struct Registers;
-template <>
-struct Registers<float, 16> {  // four 32-bit integers, beside four doubles
-    using Integer = __m128i;
-};
-template <>
-struct Registers<float, 32> {
-    using Real = __m256;
-    using Integer = __m256i;
-};
-template <>
-struct Registers<double, 32> {
-    using Real = __m256d;
-    using Integer = __m256i;
-};
-#ifdef __AVX512F__
-template <>
-struct Registers<float, 64> {
-    using Real = __m512;
-    using Integer = __m512i;
-};
-template <>
-struct Registers<double, 64> {
-    using Real = __m512d;
-    using Integer = __m512i;
-};
-#endif
 template <Simd V>
-using IntegerRegister = typename Registers<float, sizeof(V)>::Integer;
+using IntegerRegister = typename isa::Registers<float, sizeof(V)>::Integer;
 template <Simd V>
-using RealRegister = typename Registers<typename V::value_type, sizeof(V)>::Real;
+using RealRegister = typename isa::Registers<typename V::value_type, sizeof(V)>::Real;
 template <Simd V>
 RAYPOOL_INLINE auto reg(const V& v) {
     return std::bit_cast<RealRegister<V>>(v);
 }
-/// A mask as its instruction set keeps it: a bit a lane in AVX-512, a register of ones and zeros in AVX2.
+/// A mask as its instruction set keeps it: a bit a lane in AVX-512, a register of ones and zeros elsewhere.
 template <SimdMask M>
 RAYPOOL_INLINE auto mask_register(const M& m) {
     if constexpr (sizeof(M) == 1) {
@@ -80,7 +54,7 @@ RAYPOOL_INLINE auto mask_register(const M& m) {
     } else if constexpr (sizeof(M) == 2) {
         return std::bit_cast<std::uint16_t>(m);
     } else {
-        return std::bit_cast<typename Registers<float, sizeof(M)>::Integer>(m);
+        return std::bit_cast<typename isa::Registers<float, sizeof(M)>::Integer>(m);
     }
 }
 
@@ -88,14 +62,7 @@ RAYPOOL_INLINE auto mask_register(const M& m) {
 
 template <SimdMask M>
 RAYPOOL_INLINE unsigned mask_bits(const M& m) {
-    const auto bits = detail::mask_register(m);
-    if constexpr (sizeof(M) <= 2) {
-        return bits;
-    } else if constexpr (M::size() == 8) {
-        return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(bits)));
-    } else {
-        return static_cast<unsigned>(_mm256_movemask_pd(_mm256_castsi256_pd(bits)));
-    }
+    return isa::mask_bits<M::size()>(detail::mask_register(m));
 }
 template <SimdMask M>
 inline constexpr unsigned kAllBits = (1U << M::size()) - 1;
@@ -115,17 +82,17 @@ RAYPOOL_INLINE bool none(const M& m) {
 template <SimdMask M, Simd V>
 RAYPOOL_INLINE V select(const M& m, const V& yes, const V& no) {
     using Register = detail::IntegerRegister<V>;
-    return std::bit_cast<V>(x86::blend<sizeof(typename V::value_type)>(
+    return std::bit_cast<V>(isa::blend<sizeof(typename V::value_type)>(
         detail::mask_register(m), std::bit_cast<Register>(yes), std::bit_cast<Register>(no)));
 }
 
 template <Simd V>
 RAYPOOL_INLINE V mad(const V& a, const V& b, const V& c) {
-    return std::bit_cast<V>(x86::fmadd(detail::reg(a), detail::reg(b), detail::reg(c)));
+    return std::bit_cast<V>(isa::fmadd(detail::reg(a), detail::reg(b), detail::reg(c)));
 }
 template <Simd V>
 RAYPOOL_INLINE V nmad(const V& a, const V& b, const V& c) {
-    return std::bit_cast<V>(x86::fnmadd(detail::reg(a), detail::reg(b), detail::reg(c)));
+    return std::bit_cast<V>(isa::fnmadd(detail::reg(a), detail::reg(b), detail::reg(c)));
 }
 
 template <Simd V>
@@ -138,9 +105,9 @@ template <Simd V, class T>
 RAYPOOL_INLINE void compress_store(T* target, const V& v, unsigned bits) {
     const auto lanes = std::bit_cast<detail::IntegerRegister<V>>(v);
     if constexpr (sizeof(T) == 4) {
-        std::bit_cast<V>(x86::compress32(lanes, bits)).copy_to(target, stdx::element_aligned);
+        std::bit_cast<V>(isa::compress32(lanes, bits)).copy_to(target, stdx::element_aligned);
     } else {
-        std::bit_cast<V>(x86::compress64(lanes, bits)).copy_to(target, stdx::element_aligned);
+        std::bit_cast<V>(isa::compress64(lanes, bits)).copy_to(target, stdx::element_aligned);
     }
 }
 
@@ -155,20 +122,20 @@ struct RealOperations<Real> {
     static constexpr int kLanes = Real::size();
 
     RAYPOOL_INLINE static Real min(const Real& a, const Real& b) {
-        return std::bit_cast<Real>(x86::min(reg(a), reg(b)));
+        return std::bit_cast<Real>(isa::min(reg(a), reg(b)));
     }
     RAYPOOL_INLINE static Real max(const Real& a, const Real& b) {
-        return std::bit_cast<Real>(x86::max(reg(a), reg(b)));
+        return std::bit_cast<Real>(isa::max(reg(a), reg(b)));
     }
-    RAYPOOL_INLINE static Real sqrt(const Real& a) { return std::bit_cast<Real>(x86::sqrt(reg(a))); }
-    RAYPOOL_INLINE static Real floor(const Real& a) { return std::bit_cast<Real>(x86::floor(reg(a))); }
+    RAYPOOL_INLINE static Real sqrt(const Real& a) { return std::bit_cast<Real>(isa::sqrt(reg(a))); }
+    RAYPOOL_INLINE static Real floor(const Real& a) { return std::bit_cast<Real>(isa::floor(reg(a))); }
     RAYPOOL_INLINE static Real abs(const Real& a) {
-        return std::bit_cast<Real>(x86::bit_and(std::bit_cast<Register>(a), ~std::bit_cast<Register>(Real(-0.0F))));
+        return std::bit_cast<Real>(std::bit_cast<Register>(a) & ~std::bit_cast<Register>(Real(-0.0F)));
     }
     RAYPOOL_INLINE static Real copysign(const Real& magnitude, const Real& sign) {
         const Register sign_bit = std::bit_cast<Register>(Real(-0.0F));
-        return std::bit_cast<Real>(x86::bit_or(x86::bit_and(std::bit_cast<Register>(magnitude), ~sign_bit),
-                                               x86::bit_and(std::bit_cast<Register>(sign), sign_bit)));
+        return std::bit_cast<Real>((std::bit_cast<Register>(magnitude) & ~sign_bit) |
+                                   (std::bit_cast<Register>(sign) & sign_bit));
     }
 
     RAYPOOL_INLINE static Int to_int(const Real& a) { return stdx::static_simd_cast<Int>(a); }
@@ -180,12 +147,12 @@ struct RealOperations<Real> {
     RAYPOOL_INLINE static Uint32 lane_numbers() {
         return Uint32([](auto i) { return static_cast<std::uint32_t>(i); });
     }
-    RAYPOOL_INLINE static Scalar greatest_lane(const Real& v) { return x86::greatest(reg(v)); }
+    RAYPOOL_INLINE static Scalar greatest_lane(const Real& v) { return isa::greatest(reg(v)); }
     RAYPOOL_INLINE static Real load(const Scalar* from) { return Real(from, stdx::vector_aligned); }
 
     template <int size>
     RAYPOOL_INLINE static Real pick(const Scalar* table, const Uint32& which) {
-        return std::bit_cast<Real>(x86::pick<size>(table, std::bit_cast<IntegerRegister<Uint32>>(which)));
+        return std::bit_cast<Real>(isa::pick<size>(table, std::bit_cast<IntegerRegister<Uint32>>(which)));
     }
     template <int count>
     RAYPOOL_INLINE static void load_rows_at(const Scalar* table, const std::uint32_t* offset, Real* column) {
@@ -194,7 +161,7 @@ struct RealOperations<Real> {
                 const float* rows[kLanes];
                 for (int i = 0; i < kLanes; ++i) rows[i] = table + first + offset[i];
                 RealRegister<Real> block[columns];
-                x86::transpose_rows(rows, block);
+                isa::transpose_rows(rows, block);
                 for (int k = 0; k < columns; ++k) column[first + k] = std::bit_cast<Real>(block[k]);
             };
             int first = 0;
@@ -222,7 +189,7 @@ struct RealOperations<Real> {
             for (int first = 0; first < count; first += 4) {
                 RealRegister<Real> block[4];
                 for (int k = 0; k < 4; ++k) block[k] = reg(column[first + k]);
-                x86::store_transposed(block, rows + first, count);
+                isa::store_transposed(block, rows + first, count);
             }
         } else {
             for (int k = 0; k < count; ++k)
@@ -240,7 +207,7 @@ class LanePacker<Real> {
     RAYPOOL_INLINE explicit LanePacker(unsigned bits) : bits_(bits) {
         if constexpr (kIsPermuted) {
             const auto numbers = std::bit_cast<IntegerRegister<Uint32>>(RealOperations<Real>::lane_numbers());
-            order_ = std::bit_cast<Uint32>(x86::compress32(numbers, bits));
+            order_ = std::bit_cast<Uint32>(isa::compress32(numbers, bits));
         }
     }
     template <class V, class T>
@@ -255,7 +222,7 @@ class LanePacker<Real> {
     RAYPOOL_INLINE V pack(const V& v) const {
         if constexpr (kIsPermuted) {
             using Register = IntegerRegister<V>;
-            return std::bit_cast<V>(x86::permute32(std::bit_cast<Register>(v), std::bit_cast<Register>(order_)));
+            return std::bit_cast<V>(isa::permute32(std::bit_cast<Register>(v), std::bit_cast<Register>(order_)));
         } else {
             alignas(64) typename V::value_type lanes[V::size()];
             compress_store(lanes, v, bits_);

@@ -1,6 +1,7 @@
 /// Operations on registers of 128 and 256 bits: AVX2 with FMA (x86-64-v3).
 ///
-/// One overload a register type; only core/math/real_wide.h and the framebuffer call them. Minimum and maximum are
+/// Each of the headers simd_*.h has the same names in the namespace isa, one overload a register type; only
+/// core/math/real_wide.h and the framebuffer call them. Minimum and maximum are
 /// those of the hardware, `a < b ? a : b` and `a > b ? a : b`, so that a scalar comparison gives the same bits, NaN and
 /// signed zeros included. blend() takes `yes` where the mask is set. std::experimental's own where(), fma, min and max
 /// are not used: they are miscompiled by clang 14 with AVX-512, fall apart into scalar calls, or differ from the scalar
@@ -18,7 +19,32 @@
 #error "raypool needs AVX2 and FMA: build with RAYPOOL_ARCH=native or x86-64-v3"
 #endif
 
-namespace raypool::x86 {
+namespace raypool::isa {
+
+/// The registers of so many bytes: of reals, and of what lies beside them, integers and masks.
+template <class Scalar, std::size_t bytes>
+struct Registers;
+template <>
+struct Registers<float, 16> {  // four 32-bit integers, beside four doubles
+    using Integer = __m128i;
+};
+template <>
+struct Registers<float, 32> {
+    using Real = __m256;
+    using Integer = __m256i;
+};
+template <>
+struct Registers<double, 32> {
+    using Real = __m256d;
+    using Integer = __m256i;
+};
+
+/// A bit a lane, lane 0 lowest, of a mask as the instruction set keeps it: here ones or zeros in every lane.
+template <int lanes>
+RAYPOOL_INLINE unsigned mask_bits(__m256i mask) {
+    if constexpr (lanes == 8) return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(mask)));
+    if constexpr (lanes == 4) return static_cast<unsigned>(_mm256_movemask_pd(_mm256_castsi256_pd(mask)));
+}
 
 RAYPOOL_INLINE __m256 fmadd(__m256 a, __m256 b, __m256 c) {
     return _mm256_fmadd_ps(a, b, c);
@@ -55,12 +81,6 @@ RAYPOOL_INLINE __m256 floor(__m256 a) {
 }
 RAYPOOL_INLINE __m256d floor(__m256d a) {
     return _mm256_floor_pd(a);
-}
-RAYPOOL_INLINE __m256i bit_and(__m256i a, __m256i b) {
-    return _mm256_and_si256(a, b);
-}
-RAYPOOL_INLINE __m256i bit_or(__m256i a, __m256i b) {
-    return _mm256_or_si256(a, b);
 }
 
 /// Lanes of `element_size` bytes: `yes` where the mask is set, else `no`.
@@ -162,4 +182,4 @@ RAYPOOL_INLINE __m256i permute32(__m256i v, __m256i order) {
     return _mm256_permutevar8x32_epi32(v, order);
 }
 
-}  // namespace raypool::x86
+}  // namespace raypool::isa

@@ -8,7 +8,28 @@
 #error "of AVX-512, raypool takes F, VL and DQ or none: build with RAYPOOL_ARCH=x86-64-v3"
 #endif
 
-namespace raypool::x86 {
+namespace raypool::isa {
+
+template <>
+struct Registers<float, 64> {
+    using Real = __m512;
+    using Integer = __m512i;
+};
+template <>
+struct Registers<double, 64> {
+    using Real = __m512d;
+    using Integer = __m512i;
+};
+
+/// Masks are bits here, of registers of 256 bits too.
+template <int lanes>
+RAYPOOL_INLINE unsigned mask_bits(std::uint8_t mask) {
+    return mask;
+}
+template <int lanes>
+RAYPOOL_INLINE unsigned mask_bits(std::uint16_t mask) {
+    return mask;
+}
 
 RAYPOOL_INLINE __m512 fmadd(__m512 a, __m512 b, __m512 c) {
     return _mm512_fmadd_ps(a, b, c);
@@ -45,12 +66,6 @@ RAYPOOL_INLINE __m512 floor(__m512 a) {
 }
 RAYPOOL_INLINE __m512d floor(__m512d a) {
     return _mm512_roundscale_pd(a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
-}
-RAYPOOL_INLINE __m512i bit_and(__m512i a, __m512i b) {
-    return _mm512_and_si512(a, b);
-}
-RAYPOOL_INLINE __m512i bit_or(__m512i a, __m512i b) {
-    return _mm512_or_si512(a, b);
 }
 
 /// Lanes of `element_size` bytes: `yes` where the mask is set, else `no`.
@@ -168,4 +183,4 @@ RAYPOOL_INLINE __m512i permute32(__m512i v, __m512i order) {
     return _mm512_permutexvar_epi32(order, v);
 }
 
-}  // namespace raypool::x86
+}  // namespace raypool::isa

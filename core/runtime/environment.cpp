@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <string>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 
 #include "commit.h"
 #include "core/base/text.h"
+#include "core/math/processor.h"
 #include "core/math/real.h"
 #include "core/shading/compiled_scene.h"
 
@@ -30,12 +33,18 @@ std::string compiler() {
 #endif
 }
 
+/// The processor's name; of an ARM, whose kernel has none, the numbers of who made it and of what it is.
 std::string cpu() {
     std::ifstream info("/proc/cpuinfo");
+    std::map<std::string, std::string> facts;
     for (std::string line; std::getline(info, line);) {
+        const std::size_t name_end = line.find_first_of("\t:");
         const std::size_t colon = line.find(": ");
-        if (line.starts_with("model name") && colon != std::string::npos) return valid_utf8(line.substr(colon + 2));
+        if (colon != std::string::npos) facts.emplace(line.substr(0, name_end), valid_utf8(line.substr(colon + 2)));
     }
+    if (facts.contains("model name")) return facts["model name"];
+    if (facts.contains("CPU part"))
+        return fmt::format("ARM, implementer {}, part {}", facts["CPU implementer"], facts["CPU part"]);
     return "unknown";
 }
 
@@ -58,52 +67,11 @@ nlohmann::json openmp_variables() {
 }  // namespace
 
 CodeWidths code_widths() {
-    CodeWidths widths{
-        {}, stdx::native_simd<float>::size(), stdx::native_simd<double>::size(), kTreeWidth<float>, kTreeWidth<double>};
-    std::vector<std::string>& sets = widths.instruction_sets;
-#ifdef __SSE2__
-    sets.emplace_back("sse2");
-#endif
-#ifdef __SSE3__
-    sets.emplace_back("sse3");
-#endif
-#ifdef __SSSE3__
-    sets.emplace_back("ssse3");
-#endif
-#ifdef __SSE4_1__
-    sets.emplace_back("sse4.1");
-#endif
-#ifdef __SSE4_2__
-    sets.emplace_back("sse4.2");
-#endif
-#ifdef __AVX__
-    sets.emplace_back("avx");
-#endif
-#ifdef __F16C__
-    sets.emplace_back("f16c");
-#endif
-#ifdef __FMA__
-    sets.emplace_back("fma");
-#endif
-#ifdef __AVX2__
-    sets.emplace_back("avx2");
-#endif
-#ifdef __AVX512F__
-    sets.emplace_back("avx512f");
-#endif
-#ifdef __AVX512CD__
-    sets.emplace_back("avx512cd");
-#endif
-#ifdef __AVX512BW__
-    sets.emplace_back("avx512bw");
-#endif
-#ifdef __AVX512DQ__
-    sets.emplace_back("avx512dq");
-#endif
-#ifdef __AVX512VL__
-    sets.emplace_back("avx512vl");
-#endif
-    return widths;
+    return {{std::begin(kInstructionSets), std::end(kInstructionSets)},
+            stdx::native_simd<float>::size(),
+            stdx::native_simd<double>::size(),
+            kTreeWidth<float>,
+            kTreeWidth<double>};
 }
 
 nlohmann::json environment_json() {

@@ -10,12 +10,14 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <ostream>
 #include <set>
 
 #include <nlohmann/json.hpp>
 
 #include "core/film/checkpoint.h"
 #include "tests/equivalence/same_image.h"
+#include "wavefront/engine.h"
 
 namespace raypool {
 namespace {
@@ -27,66 +29,105 @@ nlohmann::json read_hashes() {
     return file ? nlohmann::json::parse(file) : nlohmann::json::object();
 }
 
-std::filesystem::path picture_of(const std::string& scene_name) {
-    return kFolder / "golden" / (scene_name + ".exr");
+std::filesystem::path picture_of(const std::string& name) {
+    return kFolder / "golden" / (name + ".exr");
+}
+
+struct GoldenCase {
+    std::string name;
+    std::string scene;
+    LightSampling light_sampling = LightSampling::None;
+    Sampler sampler = Sampler::Independent;
+    bool roulette = false;
+    int split_depth = 0;
+};
+
+/// For the test's name.
+void PrintTo(const GoldenCase& golden, std::ostream* out) {
+    *out << golden.name;
+}
+
+std::vector<GoldenCase> all_cases() {
+    static const std::set<std::string> kForLightSampling{"caustic",    "instances", "many_lights", "sky_image",
+                                                         "small_lamp", "smooth",    "solids"};
+    std::vector<std::string> scenes = builtin_scene_names();
+    scenes.insert(scenes.end(), {"instances", "sky_image", "smooth", "solids", "textures"});
+    std::vector<GoldenCase> cases;
+    for (const std::string& scene : scenes)
+        cases.push_back({scene, scene, kForLightSampling.contains(scene) ? LightSampling::Mis : LightSampling::None});
+    cases.push_back({"cornell_by_sobol_and_roulette", "cornell", LightSampling::Mis, Sampler::Sobol, true});
+    cases.push_back({"glass_stack_split", "glass_stack", LightSampling::None, Sampler::Independent, false, 2});
+    cases.push_back({"smooth_split_by_sobol", "smooth", LightSampling::Light, Sampler::Sobol, false, 2});
+    return cases;
 }
 
 /// Small, and yet enough paths for every material and texture of the scene to be met.
 template <class Scalar>
-Rendered golden_render(const std::string& scene_name) {
-    const CompiledScene<Scalar> scene = compile<Scalar>(small_scene(scene_name, 40));
+Rendered golden_render(const GoldenCase& golden, const Engine& engine) {
+    const CompiledScene<Scalar> scene = compile<Scalar>(small_scene(golden.scene, 40));
     RenderSettings settings;
     settings.end_sample = 8;
     settings.depth = 50;
-    static const std::set<std::string> kForLightSampling{"caustic",    "instances", "many_lights", "sky_image",
-                                                         "small_lamp", "smooth",    "solids"};
-    settings.light_sampling = kForLightSampling.contains(scene_name) ? LightSampling::Mis : LightSampling::None;
-    return render(recursive::RecursiveEngine(), scene, settings);
+    settings.light_sampling = golden.light_sampling;
+    settings.sampler = golden.sampler;
+    settings.roulette = golden.roulette;
+    settings.split_depth = golden.split_depth;
+    return render(engine, scene, settings);
 }
 
-void update(const std::string& scene_name, const Rendered& in_float, const Rendered& in_double) {
+wavefront::WavefrontEngine pool(wavefront::StageWidth width) {
+    wavefront::PoolSettings settings;
+    settings.width = width;
+    if (width == wavefront::StageWidth::Scalar) settings.intersection = wavefront::Intersection::Single;
+    return wavefront::WavefrontEngine(settings);
+}
+
+void update(const std::string& name, const Rendered& in_float, const Rendered& in_double) {
     nlohmann::json hashes = read_hashes();
     nlohmann::json made = {{"float", in_float.hash()}, {"double", in_double.hash()}, {"image_version", kImageVersion}};
-    const nlohmann::json committed = hashes.value(scene_name, nlohmann::json::object());
+    const nlohmann::json committed = hashes.value(name, nlohmann::json::object());
     if (committed.value("float", "") == made["float"] && committed.value("double", "") == made["double"]) return;
     ASSERT_LT(committed.value("image_version", 0), kImageVersion)
         << "checkpoints of before and of after must differ: raise kImageVersion (core/film/checkpoint.h)";
-    hashes[scene_name] = std::move(made);
+    hashes[name] = std::move(made);
     std::ofstream(kFolder / "golden_hashes.json") << hashes.dump(2) << "\n";
     std::filesystem::create_directories(kFolder / "golden");
-    write_image(picture_of(scene_name), in_float.image(), {});
+    write_image(picture_of(name), in_float.image(), {});
 }
 
-class Golden : public testing::TestWithParam<std::string> {};
+class Golden : public testing::TestWithParam<GoldenCase> {};
 
 TEST_P(Golden, ImageIsTheCommittedOne) {
-    const std::string& name = GetParam();
-    const Rendered in_float = golden_render<float>(name);
-    const Rendered in_double = golden_render<double>(name);
-    if (std::getenv("RAYPOOL_UPDATE_GOLDEN") != nullptr) return update(name, in_float, in_double);
+    const GoldenCase& golden = GetParam();
+    const recursive::RecursiveEngine recursive;
+    if (std::getenv("RAYPOOL_UPDATE_GOLDEN") != nullptr)
+        return update(golden.name, golden_render<float>(golden, recursive), golden_render<double>(golden, recursive));
 
     const nlohmann::json hashes = read_hashes();
-    ASSERT_TRUE(hashes.contains(name)) << "no hash of " << name << " is committed";
-    const Image picture = read_image(picture_of(name));
-    for (const auto& [precision, got] : {std::pair{"float", &in_float}, {"double", &in_double}}) {
-        EXPECT_EQ(got->hash(), hashes[name][precision].get<std::string>())
-            << name << " in " << precision << ", beside the committed picture in float: "
-            << leave_difference(fmt::format("golden_{}_{}", name, precision), picture, got->image());
-    }
+    ASSERT_TRUE(hashes.contains(golden.name)) << "no hash of " << golden.name << " is committed";
+    const Image picture = read_image(picture_of(golden.name));
+    const auto check = [&](const char* precision, const char* engine, const Rendered& got) {
+        EXPECT_EQ(got.hash(), hashes[golden.name][precision].get<std::string>())
+            << golden.name << " in " << precision << " by " << engine << ", beside the committed picture in float: "
+            << leave_difference(fmt::format("golden_{}_{}", golden.name, precision), picture, got.image());
+    };
+    const auto check_engine = [&](const char* name, const Engine& engine) {
+        check("float", name, golden_render<float>(golden, engine));
+        check("double", name, golden_render<double>(golden, engine));
+    };
+    check_engine("recursion", recursive);
+    check_engine("the pool", pool(wavefront::StageWidth::Simd));
+    check_engine("the scalar pool", pool(wavefront::StageWidth::Scalar));
 }
-
-std::vector<std::string> all_scenes() {
-    std::vector<std::string> names = builtin_scene_names();
-    names.insert(names.end(), {"instances", "sky_image", "smooth", "solids", "textures"});
-    return names;
-}
-INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(all_scenes()), [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(all_cases()),
+                         [](const auto& test) { return test.param.name; });
 
 TEST(GoldenHashes, AreOfScenesThatExist) {
-    const std::vector<std::string> scenes = all_scenes();
+    std::set<std::string> names;
+    for (const GoldenCase& golden : all_cases()) names.insert(golden.name);
     const nlohmann::json committed = read_hashes();
     for (const auto& [name, hashes] : committed.items()) {
-        EXPECT_NE(std::find(scenes.begin(), scenes.end(), name), scenes.end()) << name;
+        EXPECT_TRUE(names.contains(name)) << name;
         EXPECT_LE(hashes.at("image_version").get<int>(), kImageVersion) << name;
     }
 }

@@ -1,6 +1,6 @@
 // The operations that kernels are made of, on a GPU.
 
-#include "tests/gpu/operations.h"
+#include "tests/core/math/operations.h"
 
 namespace raypool::gpu {
 

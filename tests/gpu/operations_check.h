@@ -9,16 +9,9 @@
 #include <fmt/format.h>
 
 #include "core/math/flush_denormals.h"
-#include "tests/gpu/operations.h"
+#include "tests/core/math/operations.h"
 
 namespace raypool::gpu {
-
-/// Whether one is the least normal number and the other the zero of its sign: what is less by a quarter to a half of a
-/// step of denormal numbers is rounded up to it, or is flushed. x86 flushes; of a GPU only the chip can tell.
-inline bool is_rounding_to_normal(std::uint32_t a, std::uint32_t b) {
-    constexpr std::uint32_t kLeastNormal = 0x00800000U;
-    return (a ^ b) == kLeastNormal && ((a | b) & 0x7fffffffU) == kLeastNormal;
-}
 
 /// `out` is of the pairs from `first` on. Returns how many results the two rules for rounding to the least normal
 /// number tell apart.

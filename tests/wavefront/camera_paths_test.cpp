@@ -56,7 +56,7 @@ void drain(CameraPaths paths, RandomInputs& random, std::vector<Path>& out) {
 
 template <class Real>
 class CameraPathsBy : public testing::Test {};
-using Reals = testing::Types<float, Wide<float, 8>, Native<float>, Native<double>>;
+using Reals = testing::Types<float, Wide<float, kTreeWidth<float>>, Native<float>, Native<double>>;
 TYPED_TEST_SUITE(CameraPathsBy, Reals);
 
 TYPED_TEST(CameraPathsBy, RegistersOfAnySizeNameEachSampleOnceInOrder) {

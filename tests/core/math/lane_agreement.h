@@ -207,7 +207,7 @@ void expect_lanes_agree_for(int inputs, Fill fill, Kernel kernel) {
 /// Compares float with every width of float, and double with the native width of double.
 template <class Fill, class Kernel>
 void expect_lanes_agree(Fill fill, Kernel kernel, int inputs = kInputs) {
-    expect_lanes_agree_for<float, stdx::native_simd<float>, Wide<float, 8>>(inputs, fill, kernel);
+    expect_lanes_agree_for<float, stdx::native_simd<float>, Wide<float, kTreeWidth<float>>>(inputs, fill, kernel);
     expect_lanes_agree_for<double, stdx::native_simd<double>>(inputs, fill, kernel);
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/math/lane_agreement.h"
+#include "tests/core/math/operations.h"
 
 namespace raypool::test {
 namespace {
@@ -117,7 +118,7 @@ void expect_masks_tell_their_bits() {
 
 TEST(RealOperations, MasksTellTheBitOfEachLane) {
     expect_masks_tell_their_bits<stdx::native_simd<float>>();
-    expect_masks_tell_their_bits<Wide<float, 8>>();
+    expect_masks_tell_their_bits<Wide<float, kTreeWidth<float>>>();
     expect_masks_tell_their_bits<stdx::native_simd<double>>();
 }
 
@@ -149,7 +150,7 @@ void expect_compress_store_works() {
 
 TEST(RealOperations, CompressTheChosenLanesToTheFront) {
     expect_compress_store_works<stdx::native_simd<float>>();
-    expect_compress_store_works<Wide<float, 8>>();
+    expect_compress_store_works<Wide<float, kTreeWidth<float>>>();
     expect_compress_store_works<stdx::native_simd<double>>();
     float target = 1;
     compress_store(&target, 2.0F, 0);
@@ -175,7 +176,7 @@ void expect_rows_stored_and_loaded_back() {
 
 TEST(RealOperations, StoreRowsThatLoadRowsLoads) {
     expect_rows_stored_and_loaded_back<stdx::native_simd<float>>();
-    expect_rows_stored_and_loaded_back<Wide<float, 8>>();
+    expect_rows_stored_and_loaded_back<Wide<float, kTreeWidth<float>>>();
     expect_rows_stored_and_loaded_back<stdx::native_simd<double>>();
 }
 
@@ -188,6 +189,45 @@ TEST(FlushDenormals, HoldsForItsScopeOnly) {
     }
     volatile float half = tiny / 2;
     EXPECT_GT(half, 0);
+}
+
+template <class Real>
+float product_of(float a, float b) {
+    volatile float x = a;
+    volatile float y = b;
+    return static_cast<float>(lane(Real(x) * Real(y), 0));
+}
+
+TEST(FlushDenormals, LeavesARoundedResultOrFlushesItAsTheProcessorDoes) {
+    const FlushDenormals flush;
+    const float least = std::numeric_limits<float>::min();  // 2^-126
+    const float kept = kJudgesBeforeRounding ? 0 : least;
+    // (1 - 2^-26) 2^-126 is 2^-126 when it is rounded to 24 bits; (1 - 2^-24) 2^-126 has no more bits than that.
+    const float a = (1 + 0x1p-13F) * 0x1p-63F;
+    const float b = (1 - 0x1p-13F) * 0x1p-63F;
+    EXPECT_EQ(product_of<float>(a, b), kept);
+    EXPECT_EQ(product_of<stdx::native_simd<float>>(a, b), kept);
+    EXPECT_EQ(product_of<float>(-a, b), -kept);
+    EXPECT_EQ(product_of<float>((1 + 0x1p-12F) * 0x1p-63F, (1 - 0x1p-12F) * 0x1p-63F), 0);
+    EXPECT_EQ(product_of<float>(1, least), least);
+}
+
+/// The same number on every processor and of every compiler: it is that of x86.
+TEST(RealOperations, AreThoseOfEveryProcessor) {
+    const FlushDenormals flush;
+    std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a, of words
+    for (std::uint32_t i = 0; i < (1U << 18U); ++i) {
+        float a;
+        float b;
+        pair_of(i, a, b);
+        std::uint32_t out[kOperations];
+        operate(a, b, out);
+        for (const std::uint32_t word : out) {
+            const std::uint32_t zero = word & 0x80000000U;
+            hash = (hash ^ (is_rounding_to_normal(word, zero) ? zero : word)) * 0x100000001b3U;
+        }
+    }
+    EXPECT_EQ(fmt::format("{:016x}", hash), "2503d4a5ad96bcdb");
 }
 
 }  // namespace

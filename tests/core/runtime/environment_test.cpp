@@ -19,9 +19,10 @@ TEST(CodeWidths, NameTheInstructionSetsThatThisWasCompiledFor) {
         return std::find(widths.instruction_sets.begin(), widths.instruction_sets.end(), name) !=
                widths.instruction_sets.end();
     };
-    EXPECT_TRUE(has("sse2"));
+    EXPECT_TRUE(has("sse2") || has("asimd"));
     EXPECT_EQ(has("avx512f"), widths.float_lanes == 16);
     EXPECT_EQ(has("avx"), widths.float_lanes >= 8);
+    EXPECT_EQ(has("asimd"), widths.float_lanes == 4);
 }
 
 TEST(CodeWidths, AreThoseOfTheRegisters) {

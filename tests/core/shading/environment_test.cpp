@@ -215,7 +215,7 @@ void expect_lanes_agree_on_images() {
     }
 }
 TEST(EnvironmentAgreement, HoldsInFloat) {
-    expect_lanes_agree_on_images<float, stdx::native_simd<float>, Wide<float, 8>>();
+    expect_lanes_agree_on_images<float, stdx::native_simd<float>, Wide<float, kTreeWidth<float>>>();
 }
 TEST(EnvironmentAgreement, HoldsInDouble) {
     expect_lanes_agree_on_images<double, stdx::native_simd<double>>();

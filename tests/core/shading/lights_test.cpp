@@ -242,7 +242,7 @@ void expect_lanes_agree_on_lights() {
         });
 }
 TEST(LightAgreement, HoldsInFloat) {
-    expect_lanes_agree_on_lights<float, stdx::native_simd<float>, Wide<float, 8>>();
+    expect_lanes_agree_on_lights<float, stdx::native_simd<float>, Wide<float, kTreeWidth<float>>>();
 }
 TEST(LightAgreement, HoldsInDouble) {
     expect_lanes_agree_on_lights<double, stdx::native_simd<double>>();

@@ -109,7 +109,7 @@ void expect_scatter_agrees(const std::string& name) {
 class ScatterAgreement : public testing::TestWithParam<const char*> {};
 
 TEST_P(ScatterAgreement, HoldsInFloat) {
-    expect_scatter_agrees<float, stdx::native_simd<float>, Wide<float, 8>>(GetParam());
+    expect_scatter_agrees<float, stdx::native_simd<float>, Wide<float, kTreeWidth<float>>>(GetParam());
 }
 TEST_P(ScatterAgreement, HoldsInDouble) {
     expect_scatter_agrees<double, stdx::native_simd<double>>(GetParam());

@@ -1,4 +1,4 @@
-/// The operations that kernels are made of, on two numbers: what a GPU must do as the host does, bit by bit.
+/// The operations that kernels are made of, on two numbers: what every processor must do alike, bit by bit.
 #pragma once
 
 #include <bit>
@@ -7,7 +7,7 @@
 
 #include "core/math/real.h"
 
-namespace raypool::gpu {
+namespace raypool {
 
 inline constexpr int kOperations = 20;
 inline constexpr const char* kOperationNames[kOperations] = {"a + b",
@@ -40,6 +40,13 @@ RAYPOOL_INLINE std::uint32_t flushed_bits(float value) {
 RAYPOOL_INLINE std::uint32_t result_bits(float value) {
     const std::uint32_t bits = flushed_bits(value);
     return (bits & 0x7fffffffU) > 0x7f800000U ? 0x7fc00000U : bits;
+}
+
+/// Whether one is the least normal number and the other the zero of its sign: of what is less by up to half a step of
+/// denormal numbers, processors make one or the other (docs/architecture.md, "One image").
+RAYPOOL_INLINE bool is_rounding_to_normal(std::uint32_t a, std::uint32_t b) {
+    constexpr std::uint32_t kLeastNormal = 0x00800000U;
+    return (a ^ b) == kLeastNormal && ((a | b) & 0x7fffffffU) == kLeastNormal;
 }
 
 /// As kernels do: numbers are within range before they are made whole.
@@ -104,4 +111,4 @@ RAYPOOL_INLINE void pair_of(std::uint32_t i, float& a, float& b) {
     b = std::bit_cast<float>(y);
 }
 
-}  // namespace raypool::gpu
+}  // namespace raypool
