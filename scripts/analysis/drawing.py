@@ -23,19 +23,25 @@ plt.rcParams.update({
 })
 
 
+def remember(artist, spreads, along="y", name=""):
+    """For points.py, which tells who looks at a point: its spread, along which axis, and of what, if no legend has that."""
+    artist.spreads, artist.along, artist.name = spreads, along, name
+
+
 def bars(axes, places, spreads, height=0.8, **style):
     """Horizontal bars with whiskers from the lowest to the highest run."""
     medians = [s[0] for s in spreads]
     errors = [[s[0] - s[1] for s in spreads], [s[2] - s[0] for s in spreads]]
-    axes.barh(places, medians, height=height, xerr=errors, edgecolor="black", linewidth=0.6,
-              error_kw={"elinewidth": 1, "capsize": 2.5}, **style)
+    drawn = axes.barh(places, medians, height=height, xerr=errors, edgecolor="black", linewidth=0.6,
+                      error_kw={"elinewidth": 1, "capsize": 2.5}, **style)
+    drawn.spreads = spreads  # for points.py
 
 
 def line(axes, x, spreads, index=0, **style):
     """A line through medians with a band from the lowest to the highest run."""
     style.setdefault("color", COLOURS[index % len(COLOURS)])
     style.setdefault("marker", MARKERS[index % len(MARKERS)])
-    axes.plot(x, [s[0] for s in spreads], markersize=5, **style)
+    remember(axes.plot(x, [s[0] for s in spreads], markersize=5, **style)[0], spreads)
     axes.fill_between(x, [s[1] for s in spreads], [s[2] for s in spreads], color=style["color"], alpha=0.18, linewidth=0)
 
 

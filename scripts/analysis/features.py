@@ -2,7 +2,7 @@
 from statistics import median
 
 from .data import distinct, numbers, where
-from .drawing import COLOURS, MARKERS, plt
+from .drawing import COLOURS, MARKERS, plt, remember
 from .spreads import ratios, shortest, spread, text
 from .summary import Finding, Picture, Summary, Table
 from .verdict import judged
@@ -31,10 +31,11 @@ def features(run, rows):
     for i, engine in enumerate(engines):
         spreads = [percent(rows, engine, *line[1:]) for line in lines]
         places = [place + (i - 0.5) * 0.32 for place in range(len(lines))]
-        axis.errorbar([s[0] for s in spreads], places,
-                      xerr=[[s[0] - s[1] for s in spreads], [s[2] - s[0] for s in spreads]], fmt=MARKERS[i],
-                      color=COLOURS[(0, 3)[i]], markerfacecolor=("white", COLOURS[3])[i], capsize=3, markersize=7,
-                      label=engine, zorder=3)
+        drawn = axis.errorbar([s[0] for s in spreads], places,
+                              xerr=[[s[0] - s[1] for s in spreads], [s[2] - s[0] for s in spreads]], fmt=MARKERS[i],
+                              color=COLOURS[(0, 3)[i]], markerfacecolor=("white", COLOURS[3])[i], capsize=3, markersize=7,
+                              label=engine, zorder=3)
+        remember(drawn[0], spreads, "x", engine)
     axis.axvline(0, color="black", linewidth=1)
     for place in (len(features) - 1.5, len(features) - 0.5):
         axis.axhline(place, color="#888888", linewidth=0.8, linestyle=":")

@@ -72,7 +72,7 @@ def ladder(run, rows):
                 shown = min(length, limit - left)
                 if shown > 0:
                     bar = axis.barh(place, shown, left=left, height=0.75, color=colour, hatch=hatch, edgecolor="black",
-                                    linewidth=0.5)
+                                    linewidth=0.5, label=label)
                     labels.setdefault(label, bar)
                 left += length
             arrow = "" if left <= limit else f" → {left:.0f} ns "

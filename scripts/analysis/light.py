@@ -3,8 +3,9 @@ import math
 from statistics import median
 
 from .data import distinct, numbers, where
-from .drawing import COLOURS, MARKERS, plt
+from .drawing import COLOURS, MARKERS, plt, remember
 from .efficiency import LEAST_SEEDS, Runs, Winner, compare, mean
+from .spreads import Spread
 from .summary import Finding, Picture, Summary, Table
 from .verdict import judged
 
@@ -101,8 +102,9 @@ def light(run, rows):
                 if found:
                     y = place + 0.36 * (i - 0.5) + shift
                     axis.plot(found.interval, [y, y], color=COLOURS[i], linewidth=1.2)
-                    axis.plot([found.ratio], [y], MARKERS[i], color=COLOURS[i], markerfacecolor=fill, markersize=6,
-                              label=f"{way}, {'all pixels' if error == 'mse' else 'off the lamps'}")
+                    point, = axis.plot([found.ratio], [y], MARKERS[i], color=COLOURS[i], markerfacecolor=fill, markersize=6,
+                                       label=f"{way}, {'all pixels' if error == 'mse' else 'off the lamps'}")
+                    remember(point, [Spread(found.ratio, *found.interval, len(subject.rows[way]))], "x")
     axis.axvline(1, color="black", linewidth=0.9)
     axis.set_xscale("log")
     axis.set_yticks(range(len(subjects)), [f"{s.group}: {s.name}" if s.group != "scene" else s.name for s in subjects])

@@ -43,10 +43,11 @@ def load_of_scene(rows):
         mean = sum(tests) / len(tests) or 1
         mean_rays = sum(rays(row) for row in own) / len(own) or 1
         threads = [row["thread"] for row in own]
-        axis.bar(threads, [t / mean for t in tests], width=0.85, color=COLOURS[4] if group == "recursion" else COLOURS[1],
+        axis.bar(threads, [t / mean for t in tests], label="tests", width=0.85,
+                 color=COLOURS[4] if group == "recursion" else COLOURS[1],
                  edgecolor="black" if len(own) <= 32 else "none", linewidth=0.5)
-        axis.plot(threads, [rays(row) / mean_rays for row in own], marker="o", color="black", markerfacecolor="white",
-                  markersize=4 if len(own) <= 32 else 1.5, linestyle="none")
+        axis.plot(threads, [rays(row) / mean_rays for row in own], label="rays", marker="o", color="black",
+                  markerfacecolor="white", markersize=4 if len(own) <= 32 else 1.5, linestyle="none")
         axis.axhline(1, color="black", linewidth=0.9)
         name = f"pool: {way}" if group == "pool" else way
         source = "" if own[0]["source"] == "counted" else f"  ({own[0]['source']})"

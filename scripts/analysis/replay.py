@@ -3,7 +3,7 @@ from statistics import median
 from typing import NamedTuple
 
 from .data import distinct, numbers, where
-from .drawing import COLOURS, MARKERS, plt
+from .drawing import COLOURS, MARKERS, plt, remember
 from .spreads import Spread, ratios, spread, text
 from .summary import Finding, Picture, Summary, Table
 from .verdict import Verdict, judged
@@ -55,12 +55,14 @@ def reality(run, rows):
         for axis, measured, column in ((axes[0], clock, "predicted"), (axes[1], balance, "predicted_balance")):
             predicted = 100 * median(row[column] for row in shared)
             middle = median(measured)
-            axis.barh(place, 6, left=predicted - 3, height=0.75, color="#D9D9D9", label="within 3 points")
+            ground = axis.barh(place, 6, left=predicted - 3, height=0.75, color="#D9D9D9", label="within 3 points")
+            ground.is_data = False  # for points.py
             axis.plot(predicted, place - 0.15, marker="D", color=COLOURS[0], linestyle="none", markersize=6.5,
                       label="replayed, their speeds")
-            axis.errorbar(middle, place + 0.18, xerr=[[middle - min(measured)], [max(measured) - middle]], color=COLOURS[3],
-                          marker="o", markerfacecolor="white", markersize=6.5, capsize=2.5, elinewidth=1, linestyle="none",
-                          label="measured")
+            drawn = axis.errorbar(middle, place + 0.18, xerr=[[middle - min(measured)], [max(measured) - middle]],
+                                  color=COLOURS[3], marker="o", markerfacecolor="white", markersize=6.5, capsize=2.5,
+                                  elinewidth=1, linestyle="none", label="measured")
+            remember(drawn[0], [spread(measured)], "x", "measured")
     for axis, what in zip(axes, ("speedup / threads, by the clock, %", "mean / largest processor time, %")):
         axis.set_xlabel(f"{what}, {most:.0f} threads")
         axis.grid(axis="y", visible=False)

@@ -2,7 +2,7 @@
 from statistics import median
 
 from .data import distinct, numbers, where
-from .drawing import COLOURS, MARKERS, plt
+from .drawing import COLOURS, MARKERS, plt, remember
 from .spreads import ratios, spread, text
 from .summary import Finding, Picture, Summary, Table
 from .verdict import Verdict, judged
@@ -26,9 +26,11 @@ def measured(rows, way, width, threads):
     return [100 * one[row["repeat"]] / row["seconds"] / threads for row in many]
 
 
-def marks(axis, x, values, **style):
-    middle = median(values)
-    axis.errorbar(x, middle, yerr=[[middle - min(values)], [max(values) - middle]], capsize=3, elinewidth=1, **style)
+def marks(axis, x, values, name, **style):
+    found = spread(values)
+    drawn = axis.errorbar(x, found.median, yerr=[[found.median - found.low], [found.high - found.median]], capsize=3,
+                          elinewidth=1, **style)
+    remember(drawn[0], [found], name=name)
 
 
 def scaling(run, rows):
@@ -45,14 +47,17 @@ def scaling(run, rows):
         left.plot([p["threads"] for p in points], [100 * p["efficiency"] for p in points], color=colour, marker=marker,
                   markersize=4, label=way)
         if cores > 1:
-            marks(left, cores * (1 + 0.03 * (i - 2)), measured(rows, way, wide, cores), color=colour, marker=marker,
-                  markersize=9, markerfacecolor="white", markeredgewidth=1.5)
+            marks(left, cores * (1 + 0.03 * (i - 2)), measured(rows, way, wide, cores), f"{way}, measured", color=colour,
+                  marker=marker, markersize=9, markerfacecolor="white", markeredgewidth=1.5)
         points = sorted(where(replayed, way=way, threads=shown), key=lambda row: row["width"])
-        right.plot([p["width"] for p in points], [100 * p["efficiency"] for p in points], color=colour, marker=marker,
-                   markersize=5)
+        replayed_by_width, = right.plot([p["width"] for p in points], [100 * p["efficiency"] for p in points], color=colour,
+                                        marker=marker, markersize=5)
+        remember(replayed_by_width, [(100 * p["efficiency"],) * 3 for p in points], name=way)
         if cores > 1:
-            right.plot(widths, [median(measured(rows, way, w, cores)) for w in widths], color=colour, marker=marker,
-                       markersize=8, markerfacecolor="white", linestyle=":", linewidth=1)
+            found = [spread(measured(rows, way, w, cores)) for w in widths]
+            measured_by_width, = right.plot(widths, [s.median for s in found], color=colour, marker=marker, markersize=8,
+                                            markerfacecolor="white", linestyle=":", linewidth=1)
+            remember(measured_by_width, found, name=f"{way}, measured")
     if cores > 1:
         loops = {n: [row["loop_seconds"] for row in where(rows, source="measured", threads=n)] for n in (1, cores)}
         left.plot(cores, 100 * median(loops[1]) / median(loops[cores]), marker="_", markersize=26, markeredgewidth=2,

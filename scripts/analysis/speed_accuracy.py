@@ -3,7 +3,7 @@ import math
 from statistics import median
 
 from .data import distinct, numbers, where
-from .drawing import COLOURS, MARKERS, plt
+from .drawing import COLOURS, MARKERS, plt, remember
 from .efficiency import LEAST_SEEDS, Runs, Winner, compare, log_log_slope, pareto_front, rmse
 from .summary import Finding, Picture, Summary, Table
 from .verdict import judged
@@ -51,6 +51,7 @@ def speed_accuracy(run, rows):
             handles[configuration], = axis.plot(*zip(*found), color=colour, marker=MARKERS[i % len(MARKERS)], markersize=5,
                                                 linestyle=STYLES[i // len(COLOURS) % len(STYLES)], linewidth=1.2,
                                                 markerfacecolor=colour if i < len(COLOURS) else "white")
+            remember(handles[configuration], [(error,) * 3 for _, error in found], name=configuration)
             floor = floor_of(bias, configuration)
             if floor is not None and floor > 0.3 * min(error for _, error in found):
                 axis.axhline(floor, color=colour, linestyle=(0, (4, 3)), linewidth=0.9)

@@ -2,7 +2,7 @@
 from pathlib import Path
 
 from .data import distinct, numbers, where
-from .drawing import COLOURS, MARKERS, plt
+from .drawing import COLOURS, MARKERS, plt, remember
 from .spreads import spread, text
 from .summary import Finding, Picture, Summary, Table
 from .verdict import judged
@@ -39,9 +39,10 @@ def panel(axis, case, rows):
         kind = of_method[0]["method_kind"]
         colour = PALETTE[kind][seen[kind]]
         seen[kind] += 1
-        axis.plot(places, [max(row["error"], floor) for row in of_method], linestyle=LINES[kind], color=colour,
-                  marker=MARKERS[i], markersize=4.5, linewidth=2.2 if kind == "ours" else 1.3, label=method,
-                  zorder=3 if kind == "ours" else 2, clip_on=False)
+        curve, = axis.plot(places, [max(row["error"], floor) for row in of_method], linestyle=LINES[kind], color=colour,
+                           marker=MARKERS[i], markersize=4.5, linewidth=2.2 if kind == "ours" else 1.3, label=method,
+                           zorder=3 if kind == "ours" else 2, clip_on=False)
+        remember(curve, [(row["error"],) * 3 for row in of_method])  # also of none at all, which lies on the floor
     if tolerance > 0:
         axis.axhline(tolerance, color="#888888", linewidth=1)
     held = sum(row["is_asked"] == 1 for row in where(rows, method=methods[0]))
