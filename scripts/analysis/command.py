@@ -1,12 +1,24 @@
-"""The commands of the analysis. `raypool study` calls the first two."""
+"""The commands of the analysis. `raypool study` calls the first two, `raypool report` the third."""
 import argparse
 import importlib
+import importlib.util
+import sys
 
 from . import data, drawing, page, reproduction, trace
 
+FAILED, BAD_INPUT = 1, 2
+
+
+def has_jinja():
+    """Says so where it is missing: all but the pages can be had without."""
+    if importlib.util.find_spec("jinja2"):
+        return True
+    print("raypool: no index.html, which needs the package python3-jinja2", file=sys.stderr)
+    return False
+
 
 def study(folder):
-    """Findings into run.json, the page and the pictures, from run.json and data.csv."""
+    """Findings into run.json, the pages and the pictures, from run.json and data.csv."""
     run, rows = data.read(folder)
     module = importlib.import_module("." + run["study"].replace("-", "_"), __package__)
     run.update(module.summarise(run, rows).as_json())
@@ -14,6 +26,30 @@ def study(folder):
         drawing.save(module.PICTURES[picture["name"]]({**run, "folder": folder}, rows), folder, run, picture)
     data.write_text(f"{folder}/summary.md", page.summary_page(run))
     data.write_json(f"{folder}/run.json", run)
+    if has_jinja():
+        from . import report
+        report.write(folder)
+
+
+def reproduce(folder, studies, beyond):
+    reproduction.write(folder, studies, beyond)
+    if has_jinja():
+        from . import joined
+        joined.write([f"{folder}/{name}" for name in [*studies, *beyond]], f"{folder}/site")
+
+
+def report_of(folders, site):
+    """The exit status; what is wrong with a folder is said in one line."""
+    from . import joined
+    try:
+        joined.write(folders, site)
+    except joined.NoStudy as error:
+        print(f"raypool: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except OSError as error:
+        print(f"raypool: {page.shell_word(str(error.filename))}: {error.strerror}", file=sys.stderr)
+        return FAILED
+    return 0
 
 
 def main():
@@ -25,6 +61,9 @@ def main():
     of_paper.add_argument("folder")
     of_paper.add_argument("studies", nargs="+", help="which repeat the paper")
     of_paper.add_argument("--beyond", nargs="+", required=True, help="which ask what the paper did not")
+    of_runs = commands.add_parser("report", help="pages that join the summarised runs in FOLDERs")
+    of_runs.add_argument("site")
+    of_runs.add_argument("folders", nargs="+")
     of_trace = commands.add_parser("trace", help="draw what `raypool render --trace` wrote, a lane for each thread")
     of_trace.add_argument("trace")
     of_trace.add_argument("picture")
@@ -32,6 +71,8 @@ def main():
     if asked.command == "study":
         study(asked.folder)
     elif asked.command == "reproduce":
-        reproduction.write(asked.folder, asked.studies, asked.beyond)
+        reproduce(asked.folder, asked.studies, asked.beyond)
+    elif asked.command == "report":
+        sys.exit(report_of(asked.folders, asked.site))
     else:
         trace.draw(asked.trace, asked.picture)

@@ -51,7 +51,7 @@ def value_text(ruler, value, spread):
     if spread is None:
         return told_by(ruler, value)
     middle, low, high = (told_by(ruler, number) for number in spread[:3])
-    return middle + (f" ({low} to {high})" if low != high else "") + (f", n {spread[3]}" if len(spread) > 3 else "")
+    return middle + (f" ({low} to {high})" if low != high else "") + (f", n\u00a0{spread[3]}" if len(spread) > 3 else "")
 
 
 def ruler_name(figure, axis, which):
@@ -176,5 +176,5 @@ def inline_svg(figure, name, title):
     body = re.sub(r"\s*\n\s*", "\n", own_ids(body, escape(name)))
     width = round(float(view.split()[2]))
     points = '<g class="points">\n' + "\n".join(over) + "\n</g>\n" if over else ""
-    return (f'<svg viewBox="{view}" style="max-width: {round(width * 1.5)}px; min-width: {min(width, 640)}px" role="group" '
+    return (f'<svg viewBox="{view}" style="max-width: {round(width * 1.5)}px; min-width: {min(width, 900)}px" role="group" '
             f'aria-label="{escape(title)}">{body}{points}</svg>')
