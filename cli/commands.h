@@ -17,6 +17,7 @@ void add_diff_command(CLI::App& app, int& status);
 void add_merge_command(CLI::App& app, int& status);
 // Where RAYPOOL_BUILD_BENCH is on.
 void add_advise_command(CLI::App& app, int& status);
+void add_report_command(CLI::App& app, int& status);
 void add_study_command(CLI::App& app, int& status);
 
 }  // namespace raypool::cli

@@ -49,6 +49,7 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
 #ifdef RAYPOOL_HAS_BENCH
         raypool::cli::add_advise_command(app, status);
         raypool::cli::add_study_command(app, status);
+        raypool::cli::add_report_command(app, status);
 #endif
         app.parse_complete_callback([&app] {  // before what a command does
             for (const CLI::App* command : app.get_subcommands()) raypool::cli::check_option_rules(*command);

@@ -14,10 +14,15 @@ namespace fs = std::filesystem;
 
 constexpr int kPackageIsMissing = 3;  // scripts/analysis/__main__.py
 
-void run_analysis(const fs::path& folder, std::vector<std::string> arguments) {
+/// Returns the exit status; kPackageIsMissing also where there is no Python.
+int call_analysis(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(),
                      {kPython, "-B", own_script(RAYPOOL_INSTALLED_ANALYSIS, RAYPOOL_SOURCE_ANALYSIS)});
-    const int status = fs::exists(kPython) ? run_process(arguments) : kPackageIsMissing;
+    return fs::exists(kPython) ? run_process(arguments) : kPackageIsMissing;
+}
+
+void run_analysis(const fs::path& folder, std::vector<std::string> arguments) {
+    const int status = call_analysis(std::move(arguments));
     if (status == 0) return;
     throw std::runtime_error(
         fmt::format("{}: the data are complete, but {}; the same command goes on from there", folder.string(),
@@ -38,6 +43,15 @@ void write_reproduction(const fs::path& folder, const std::vector<std::string>& 
     arguments.emplace_back("--beyond");
     arguments.insert(arguments.end(), beyond.begin(), beyond.end());
     run_analysis(folder, std::move(arguments));
+}
+
+int write_report(const std::vector<std::string>& folders, const std::string& site) {
+    std::vector<std::string> arguments{"report", "--", site};
+    arguments.insert(arguments.end(), folders.begin(), folders.end());
+    const int status = call_analysis(std::move(arguments));
+    if (status == kPackageIsMissing)
+        throw std::runtime_error("a report needs the packages python3, python3-matplotlib and python3-jinja2");
+    return status;
 }
 
 }  // namespace raypool::studies

@@ -37,6 +37,12 @@ class Change:
                       min(self.old.runs, self.new.runs))
 
     @property
+    def speed(self):
+        """The ratio as times as fast, whether the column is a time or a rate."""
+        ratio = self.ratio
+        return ratio if is_rate(self.column) else Spread(1 / ratio.median, 1 / ratio.high, 1 / ratio.low, ratio.runs)
+
+    @property
     def size(self):
         """The same for twice and for half."""
         return abs(math.log(self.ratio.median))

@@ -2,16 +2,22 @@
 import itertools
 import re
 import sys
+import textwrap
 from dataclasses import dataclass
 from pathlib import Path
 
+from markupsafe import Markup
+
 from . import data, page, report
 from .comparison import compare
+from .drawing import COLOURS, MARKERS, plt, remember
+from .points import inline_svg
 from .report import cell, sheet
 from .spreads import text
 from .verdict import LEAST_RUNS, Verdict
 
 MOST_CHANGES = 1000
+MOST_DRAWN = 30
 
 
 class NoStudy(Exception):
@@ -116,8 +122,38 @@ def pairs_sheet(compared):
 def changes_sheet(changes):
     header = ["case", "measured", "older", "newer", "newer / older", "change"]
     rows = [[change.case, change.column, figures(change.old), figures(change.new),
-             cell(text(change.ratio, 3), number=change.ratio.median), change.verdict] for change in changes[:MOST_CHANGES]]
+             cell(text(change.ratio, 3), number=change.ratio.median),
+             cell("", verdict=change.verdict) if change.is_beyond_noise else change.verdict]
+            for change in changes[:MOST_CHANGES]]
     return sheet("Changes", header, rows)
+
+
+def picture(changes):
+    """The largest changes beyond the noise, one for each case; nothing where there is none."""
+    first = {}
+    for change in changes:
+        if change.is_beyond_noise:
+            first.setdefault(change.case, change)
+    largest = list(first.values())[:MOST_DRAWN]
+    if not largest:
+        return ""
+    figure, axis = plt.subplots(figsize=(11, 1.2 + 0.3 * len(largest)))
+    for index, (is_better, name) in enumerate(((True, "faster"), (False, "slower"))):
+        of_kind = [(place, change.speed) for place, change in enumerate(largest) if change.is_better == is_better]
+        if of_kind:
+            places, speeds = zip(*of_kind)
+            drawn = axis.errorbar([s.median for s in speeds], places, fmt=MARKERS[index], color=COLOURS[2 + index], label=name,
+                                  xerr=[[s.median - s.low for s in speeds], [s.high - s.median for s in speeds]], capsize=3)
+            remember(drawn[0], speeds, "x", name)
+    axis.axvline(1, color="black", linewidth=1)
+    axis.set_xscale("log", base=2)
+    axis.xaxis.set_major_formatter(plt.FuncFormatter(lambda value, _: f"{value:.4g}"))
+    axis.set_yticks(range(len(largest)), [textwrap.shorten(change.case, 70).replace("$", r"\$") for change in largest])
+    axis.invert_yaxis()
+    axis.grid(axis="y", visible=False)
+    axis.set_xlabel("times as fast as the older run")
+    axis.legend(loc="upper left", bbox_to_anchor=(1, 1))
+    return Markup(inline_svg(figure, "changes", "The largest changes"))
 
 
 def figures(s):
@@ -161,7 +197,7 @@ def comparison_page(old, new, found):
     return report.filled(
         "comparison.html", home="index.html", old=old, new=new, found=found, better=better, worse=len(beyond) - better,
         least_runs=LEAST_RUNS, open_count=sum(not change.can_be_told for change in found.changes),
-        other_options=other_options(old, new), changes=changes_sheet(found.changes),
+        other_options=other_options(old, new), changes=changes_sheet(found.changes), picture=picture(found.changes),
         left_out=max(0, len(found.changes) - MOST_CHANGES), findings=findings_sheet(old, new),
         provenance=origins_sheet(old, new),
         commands=list(dict.fromkeys(page.command_line(side.run) for side in (old, new))))
