@@ -1,7 +1,6 @@
-"""The commands of the analysis. `raypool study` calls the first two, `raypool report` the third."""
+"""The commands of the analysis. `raypool study` calls study and reproduce, `raypool report` report."""
 import argparse
 import importlib
-import importlib.util
 import sys
 
 from . import data, drawing, page, reproduction, trace
@@ -11,10 +10,12 @@ FAILED, BAD_INPUT = 1, 2
 
 def has_jinja():
     """Says so where it is missing: all but the pages can be had without."""
-    if importlib.util.find_spec("jinja2"):
+    try:
+        importlib.import_module("jinja2")
         return True
-    print("raypool: no index.html, which needs the package python3-jinja2", file=sys.stderr)
-    return False
+    except ModuleNotFoundError:
+        print("raypool: no index.html, which needs the package python3-jinja2", file=sys.stderr)
+        return False
 
 
 def study(folder):
@@ -57,6 +58,8 @@ def main():
     commands = parser.add_subparsers(required=True, dest="command")
     of_study = commands.add_parser("study", help="summarise and draw the run in FOLDER")
     of_study.add_argument("folder")
+    of_page = commands.add_parser("page", help="index.html alone, of the summarised runs in FOLDERs")
+    of_page.add_argument("folders", nargs="+")
     of_paper = commands.add_parser("reproduce", help="pages over the summarised runs of studies, folders in FOLDER")
     of_paper.add_argument("folder")
     of_paper.add_argument("studies", nargs="+", help="which repeat the paper")
@@ -70,6 +73,10 @@ def main():
     asked = parser.parse_args()
     if asked.command == "study":
         study(asked.folder)
+    elif asked.command == "page":
+        from . import report
+        for folder in asked.folders:
+            report.write(folder)
     elif asked.command == "reproduce":
         reproduce(asked.folder, asked.studies, asked.beyond)
     elif asked.command == "report":

@@ -17,8 +17,8 @@ RADIUS = 6
 
 # What must be another colour in the dark; the style sheet knows both.
 COLOURS = {"#000000": "currentColor", "#ffffff": "var(--paper)", "#dddddd": "var(--grid)", "#d9d9d9": "var(--ground)",
-           "#eeeeee": "var(--ground)", "#333333": "var(--soft)", "#555555": "var(--soft)", "#888888": "var(--soft)",
-           "#999999": "var(--soft)", "#b0b0b0": "var(--grid)", "#0072b2": "var(--blue)", "#004c78": "var(--deep-blue)",
+           "#eeeeee": "var(--ground)", "#333333": "var(--soft)", "#555555": "var(--soft)", "#888888": "var(--mid)",
+           "#999999": "var(--mid)", "#b0b0b0": "var(--grid)", "#0072b2": "var(--blue)", "#004c78": "var(--deep-blue)",
            "#f0e442": "var(--yellow)"}
 
 

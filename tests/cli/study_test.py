@@ -31,6 +31,8 @@ class StudyTest(CommandTest):
         summary = (folder / "summary.md").read_text()
         self.assertNotRegex(summary, r"(?i)\b(nan|inf)\b")
         self.assertGreater(len(run["pictures"]), 0)
+        page = (folder / "index.html").read_text()
+        self.assertEqual(page.count("<svg"), len(run["pictures"]))  # none that could not be drawn for it
         for picture in run["pictures"]:
             self.assertIn(f"{picture['name']}.png", summary)
             self.assertGreater(len(picture["caption"]), 40)
@@ -62,6 +64,8 @@ class StudyTest(CommandTest):
                     page = (self.folder / "out/reproduce/summary.md").read_text()
                     for item in ("Table 1", "Table 2", "Figure 5", "Figure 11", "CPU against GPU"):
                         self.assertIn(item, page)
+                    joined = (self.folder / "out/reproduce/site/index.html").read_text()
+                    self.assertEqual(joined.count('<tr><td><a href="'), 9)
                     self.assertRegex(page, r"\*\*(holds|does not hold|cannot be told here)")
                     beyond = (self.folder / "out/reproduce/beyond.md").read_text()
                     for study in ("scene-size", "traversal", "light", "gpu"):
@@ -145,6 +149,28 @@ class StudyTest(CommandTest):
         self.run_well("study", "schedules", *TINY, "--quiet")
         self.assertEqual(rows_of(self.folder / "out/schedules"), rows)
         self.check_folder(self.folder / "out/schedules")
+
+    def test_without_the_package_of_pages_all_but_the_page_is_there(self):
+        (self.folder / "hidden").mkdir()
+        self.write("hidden/jinja2.py", "raise ModuleNotFoundError('hidden by a test')")
+        hidden = {"PYTHONPATH": str(self.folder / "hidden")}
+        done = self.run_command("study", "schedules", *TINY, "--quiet", environment=hidden)
+        self.assertEqual((done.returncode, done.stderr),
+                         (0, "raypool: no index.html, which needs the package python3-jinja2\n"))
+        self.assertTrue((self.folder / "out/schedules/summary.md").exists())
+        self.assertFalse((self.folder / "out/schedules/index.html").exists())
+        refused = self.run_command("report", "out", environment=hidden)
+        self.assert_one_line(refused, 1, "python3-jinja2")
+
+    def test_runs_are_joined_in_pages(self):
+        for out, seed in (("out/one", 0), ("out/two", 1)):
+            self.run_well("study", "schedules", *TINY, "--threads", 1, "--seed", seed, "--out", out, "--quiet")
+        said = self.run_well("report", "out/one", "out/two", "-o", "site").stdout
+        self.assertEqual(said, "site/index.html\n")
+        self.assertEqual(len(list((self.folder / "site").glob("schedules-*.html"))), 3)  # two runs, and both side by side
+        self.assert_refused("report", "absent", named=["absent", "no study in it"])
+        self.assert_refused("report", named="folders")
+        self.assert_refused("report", "out/one", "-o", "out/one", named=["out/one", "an index.html of its own"])
 
     def test_figures_that_no_run_leaves_are_refused_by_their_line(self):
         self.run_well("study", "schedules", *TINY, "--quiet")
