@@ -29,6 +29,7 @@ ALLOWED["cli"] = {*CORE, *ENGINES, "cluster", "bench/accuracy", "bench/peers", "
 
 # Libraries that only these folders may include, so that no other needs them.
 LIBRARIES = {"png.h": {"core/image"}, "Imf": {"core/image"}, "mpi.h": {"cluster"}, "embree3/": {"bench/peers"}, "cuda_runtime": {"gpu"},
+             "immintrin.h": {"core/math"}, "xmmintrin.h": {"core/math"}, "arm_neon.h": {"core/math"},
              "CLI/": {"cli"}, "xxhash.h": {"core/base", "core/scene", "core/film", "bench/accuracy"},
              "boost/": {"core/image", "bench/accuracy"}}
 
