@@ -47,10 +47,8 @@ void add_in_halves(int rounds) {  // by every thread of a team, all at the same 
 }
 
 int main(int count, char** words) {
-    const std::string mode = count > 1 ? words[1] : "";
+    const std::string mode = count > 1 ? words[1] : "racy";
     const int threads = count > 2 ? std::atoi(words[2]) : 2;
-    omp_set_dynamic(0);
-    long right = kContributions;
     std::vector<std::vector<long>> copies(static_cast<std::size_t>(threads), std::vector<long>(kPixels));
 
 #pragma omp parallel num_threads(threads)
@@ -74,7 +72,7 @@ int main(int count, char** words) {
                 if (pixel_of(i) % threads == omp_get_thread_num()) sums[pixel_of(i)] = sums[pixel_of(i)] + 1;
         }
     }
-    if (mode == "halves") right = 1000L * threads;
+    const long right = mode == "halves" ? 1000L * threads : kContributions;
     long sum = sums[0] + sums[1] + sums[2] + sums[3];
     for (const std::vector<long>& copy : copies) sum += copy[0] + copy[1] + copy[2] + copy[3];
     std::printf("%s: sum %ld of %ld, lost %ld\n", mode.c_str(), sum, right, right - sum);
