@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""What each thread of a render did: load.py STATS.json...
+"""What each thread of a render did, and how full its pool was: show.py STATS.json...
 
-The files are what `raypool render --stats FILE` wrote. Tests of boxes and primitives are there with --count-work. The last
-line of a table is the greatest over the mean: 1 is perfect balance.
+The files are what `raypool render --stats FILE` wrote. Tests of boxes and primitives, and the rounds of a pool, are there
+with --count-work. The last line of a table is the greatest over the mean: 1 is perfect balance.
 """
 import json
 import sys
@@ -33,6 +33,10 @@ def main():
         for thread in range(len(stats["threads"])):
             print(f"{thread:<8}", *(f"{values[thread]:>10}" for _, values in table))
         print("max/mean", *(f"{max_over_mean(values):>10.3f}" for _, values in table))
+        if stats.get("rounds"):
+            records = sum(each["records_in"] for each in stats["rounds"]) / len(stats["rounds"])
+            print(f"{len(stats['rounds'])} rounds, {records:.1f} records in each of them, "
+                  f"{100 * records / stats['pool_rays']:.1f} % of a pool of {stats['pool_rays']}")
 
 
 if __name__ == "__main__":
