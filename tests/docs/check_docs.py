@@ -5,7 +5,7 @@ Usage: check_docs.py REPOSITORY RAYPOOL
 
 `raypool`, the generators of scenes/ and the programs of docs/lab/ are run, in their order on the page, in a scratch folder that
 looks like the repository and whose files go away. Other scripts of the repository are not run; they must exist and be executable.
-Presets must exist.
+Presets must exist. A block marked ```json NAME is written to that file of the scratch folder before the page's commands run.
 """
 import json
 import os
@@ -36,6 +36,11 @@ def commands(page):
                 if shlex.split(pending, comments=True):
                     yield start, pending
                 pending = ""
+
+
+def write_files(page, scratch):
+    for name, content in re.findall(r"^```json (\S+)\n(.*?)^```$", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE):
+        (scratch / name).write_text(content, encoding="utf-8")
 
 
 def problem_with(command, repository, scratch, raypool, presets):
@@ -79,6 +84,7 @@ def main():
         (scratch / "out").mkdir()
 
         for page in pages:
+            write_files(page, scratch)
             for number, command in commands(page):
                 run_count += command.startswith(RUN)
                 problem = problem_with(command, repository, scratch, raypool, presets)
