@@ -42,7 +42,7 @@ def folder_of(path):
 def includes():
     """(file, folder, what it includes) for each include of the product's C++ files."""
     for top in sorted(SOURCE.iterdir()):
-        if not top.is_dir() or top.name.startswith((".", "build")) or top.name == "tests":
+        if not top.is_dir() or top.name.startswith((".", "build")) or top.name in ("docs", "tests"):
             continue
         for path in sorted(top.rglob("*")):
             if path.suffix not in (".h", ".cpp", ".cu"):
