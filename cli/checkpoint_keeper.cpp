@@ -44,22 +44,29 @@ Checkpoint load_checkpoint(const CheckpointOptions& options, const Checkpoint& w
     return sums;
 }
 
-CheckpointKeeper::CheckpointKeeper(const CheckpointOptions& options, cluster::Ranks& ranks)
-    : options_(options), ranks_(ranks) {
+CheckpointKeeper::CheckpointKeeper(const CheckpointOptions& options, Preview* preview, cluster::Ranks& ranks)
+    : options_(options),
+      preview_(preview),
+      has_preview_(ranks.greatest(preview != nullptr ? 1 : 0) != 0),
+      ranks_(ranks) {
     if (is_kept()) signals_.emplace();
 }
 
 bool CheckpointKeeper::keep(Checkpoint& sums, const std::function<void()>& complete) {
-    if (!is_kept()) return true;
+    if (!wants_pieces()) return true;
+    // Rank 0 alone says what is due, so that the greatest of all is what it says, unless one is asked to stop.
     const std::chrono::duration<double> since = Clock::now() - written_;
-    const std::int64_t asked =
-        ranks_.greatest(2 * StopSignals::received() + (since.count() >= options_.every_s ? 1 : 0));
+    const bool is_time = is_kept() && ranks_.is_first() && since.count() >= options_.every_s;
+    const bool is_looked_at = preview_ != nullptr && preview_->is_due();
+    const std::int64_t signal = is_kept() ? StopSignals::received().load() : 0;
+    const std::int64_t asked = ranks_.greatest(4 * signal + (is_time ? 2 : 0) + (is_looked_at ? 1 : 0));
+    stopped_by_ = static_cast<int>(asked / 4);
     if (asked != 0) {
         complete();
         cluster::gather(ranks_, sums.framebuffer);
-        write(sums);
+        if (stopped_by_ != 0 || (asked & 2) != 0) write(sums);
+        if (preview_ != nullptr) preview_->show(sums);
     }
-    stopped_by_ = static_cast<int>(asked / 2);
     return stopped_by_ == 0;
 }
 
@@ -71,6 +78,7 @@ void CheckpointKeeper::write(Checkpoint& sums) {
 
 void CheckpointKeeper::finish(Checkpoint& sums) {
     cluster::gather(ranks_, sums.framebuffer);
+    if (preview_ != nullptr) preview_->show(sums);
     if (!is_kept()) return;
     try {
         write(sums);

@@ -1,4 +1,5 @@
-/// Renders that outlive what happens to them: a checkpoint every so often, and one when a signal asks to stop.
+/// What is done between the pieces of a render: a checkpoint every so often, and one when a signal asks to stop; and a
+/// look at the image.
 #pragma once
 
 #include <chrono>
@@ -8,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/preview.h"
 #include "cli/stop_signals.h"
 #include "cluster/ranks.h"
 #include "core/base/file_lock.h"
@@ -32,17 +34,19 @@ Checkpoint load_checkpoint(const CheckpointOptions& options, const Checkpoint& w
 
 /// Keeps the checkpoint of one render. With a file, signals ask it to stop while it lives (stop_signals.h); a second
 /// one ends the program at once, with the last checkpoint whole. Of several ranks, all have one and call it alike:
-/// whichever is asked to stop, all do, and the sums go to rank 0, which writes the file.
+/// whichever is asked to stop, all do, and the sums go to rank 0, which writes the file and shows the image.
 class CheckpointKeeper {
   public:
-    CheckpointKeeper(const CheckpointOptions& options, cluster::Ranks& ranks);
+    /// A preview of rank 0 is a preview of all.
+    CheckpointKeeper(const CheckpointOptions& options, Preview* preview, cluster::Ranks& ranks);
     CheckpointKeeper(const CheckpointKeeper&) = delete;
     CheckpointKeeper& operator=(const CheckpointKeeper&) = delete;
     ~CheckpointKeeper() = default;
 
-    [[nodiscard]] bool is_kept() const { return !options_.file.empty(); }
-    /// To be asked between pieces of the render: writes the file if it is time to, after complete() has brought all
-    /// that was rendered into `sums`. False when the render shall stop.
+    /// Whether there is anything to do between pieces; alike on all ranks.
+    [[nodiscard]] bool wants_pieces() const { return is_kept() || has_preview_; }
+    /// To be asked between pieces of the render: does what is due, after complete() has brought all that was rendered
+    /// into `sums`. False when the render shall stop.
     bool keep(Checkpoint& sums, const std::function<void()>& complete);
     /// Gathers the sums of a render that has ended, with a file or without, and writes it. Where that fails, failure()
     /// says why: the sums are there all the same.
@@ -55,11 +59,14 @@ class CheckpointKeeper {
     [[nodiscard]] static bool has_said_so() { return StopSignals::has_said_last_words(); }
 
   private:
+    [[nodiscard]] bool is_kept() const { return !options_.file.empty(); }
     void write(Checkpoint& sums);
     void prepare_last_words(const Checkpoint& sums);
 
     using Clock = std::chrono::steady_clock;
     const CheckpointOptions& options_;
+    Preview* preview_;
+    bool has_preview_;
     cluster::Ranks& ranks_;
     Clock::time_point written_ = Clock::now();
     std::optional<StopSignals> signals_;

@@ -15,6 +15,8 @@ void add_compare_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app, int& status);
 void add_diff_command(CLI::App& app, int& status);
 void add_merge_command(CLI::App& app, int& status);
+void add_scenes_command(CLI::App& app);
+void add_manual_command(CLI::App& app);  ///< of all commands that the parser has
 // Where RAYPOOL_BUILD_BENCH is on.
 void add_advise_command(CLI::App& app, int& status);
 void add_report_command(CLI::App& app, int& status);

@@ -11,6 +11,10 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_option("scene", options.scene, "Scene file, or the name of a built-in scene (default: paper)");
     command.add_option("--width", options.width, "Image width; the height follows (default: the scene's)")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
+    command
+        .add_option("--height", options.height,
+                    "Image height; the width follows, unless it is given too (default: by the width)")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
     command.add_option("--depth", options.depth, "Most segments of a path (default: 50)")
         ->check(CLI::Range(std::int64_t{0}, std::int64_t{path_step::kMostBounces}));
     command
@@ -53,7 +57,7 @@ RenderSettings common_settings(const CommonOptions& options) {
 
 Scene scene_of(const CommonOptions& options) {
     Scene scene = load_scene(options.scene);
-    if (options.width != 0) set_width(scene, options.width);
+    set_size(scene, options.width, options.height);
     return scene;
 }
 

@@ -16,7 +16,8 @@ namespace raypool::cli {
 /// As they are given.
 struct CommonOptions {
     std::string scene = "paper";
-    std::int64_t width = 0;  ///< 0: the scene's
+    std::int64_t width = 0;   ///< 0: the scene's
+    std::int64_t height = 0;  ///< 0: follows from the width
     std::int64_t depth = 50;
     int split_depth = 0;
     std::string seed = "0";
@@ -34,7 +35,7 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 /// that make no sense.
 RenderSettings common_settings(const CommonOptions& options);
 
-/// At the width that is asked for.
+/// At the size that is asked for.
 Scene scene_of(const CommonOptions& options);
 
 }  // namespace raypool::cli

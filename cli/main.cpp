@@ -46,11 +46,13 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
         raypool::cli::add_info_command(app, status);
         raypool::cli::add_diff_command(app, status);
         raypool::cli::add_merge_command(app, status);
+        raypool::cli::add_scenes_command(app);
 #ifdef RAYPOOL_HAS_BENCH
         raypool::cli::add_advise_command(app, status);
         raypool::cli::add_study_command(app, status);
         raypool::cli::add_report_command(app, status);
 #endif
+        raypool::cli::add_manual_command(app);
         app.parse_complete_callback([&app] {  // before what a command does
             for (const CLI::App* command : app.get_subcommands()) raypool::cli::check_option_rules(*command);
         });

@@ -4,9 +4,11 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -27,6 +29,44 @@ SampleRange parse_samples(std::string_view text, std::int64_t spp) {
     throw InputError(fmt::format("--samples: must be A:B with 0 <= A < B <= spp ({}), got {}", spp, text));
 }
 
+namespace {
+
+/// Whole numbers with commas between, as many as `most` has, each at most as much; nothing where it is not that.
+template <std::size_t count>
+std::optional<std::array<std::int64_t, count>> parse_numbers(std::string_view text,
+                                                             const std::array<std::int64_t, count>& most) {
+    std::array<std::int64_t, count> numbers;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t comma = i + 1 < count ? text.find(',') : text.size();
+        const auto number = parse_integer(text.substr(0, comma), 0, most[i]);
+        if (comma == std::string_view::npos || !number) return std::nullopt;
+        numbers[i] = *number;
+        text.remove_prefix(std::min(comma + 1, text.size()));
+    }
+    return numbers;
+}
+
+}  // namespace
+
+PixelWindow parse_window(std::string_view text, const char* option, std::int64_t width, std::int64_t height) {
+    const auto numbers = parse_numbers<4>(text, {width, height, width, height});
+    if (numbers) {
+        const auto [x_begin, y_begin, x_end, y_end] = *numbers;
+        if (x_begin < x_end && y_begin < y_end) return {x_begin, x_end, y_begin, y_end};
+    }
+    throw InputError(fmt::format("{}: must be X0,Y0,X1,Y1 with 0 <= X0 < X1 <= {} and 0 <= Y0 < Y1 <= {}, got {}",
+                                 option, width, height, text));
+}
+
+PixelWindow parse_pixel(std::string_view text, const char* option, std::int64_t width, std::int64_t height) {
+    const auto numbers = parse_numbers<2>(text, {width - 1, height - 1});
+    if (!numbers)
+        throw InputError(
+            fmt::format("{}: must be X,Y with 0 <= X < {} and 0 <= Y < {}, got {}", option, width, height, text));
+    const auto [x, y] = *numbers;
+    return {x, x + 1, y, y + 1};
+}
+
 std::uint64_t parse_seed(std::string_view text) {
     std::uint64_t seed = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
@@ -40,6 +80,11 @@ int thread_count(int asked) {
     check_thread_count(count, asked == 0 ? "OMP_NUM_THREADS" : "--threads");
     omp_set_num_threads(count);
     return count;
+}
+
+ImageTarget parse_image_target(const std::string& text) {
+    if (text.ends_with(":-")) return {"/dev/stdout", image_format("image." + text.substr(0, text.size() - 2)), true};
+    return {text, image_format(text), false};
 }
 
 namespace {

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "core/film/checkpoint.h"
+#include "core/image/image.h"
+#include "core/image/image_file.h"
 #include "core/runtime/settings_text.h"
 
 namespace raypool::cli {
@@ -23,12 +25,26 @@ inline constexpr std::int64_t kMostSpp = std::numeric_limits<std::int32_t>::max(
 /// "A:B" with 0 <= A < B <= spp.
 SampleRange parse_samples(std::string_view text, std::int64_t spp);
 
+/// "X0,Y0,X1,Y1": columns X0 to X1 and rows Y0 to Y1, without the last ones, of an image of this size; or the one pixel
+/// "X,Y". `option` is named in refusals.
+PixelWindow parse_window(std::string_view text, const char* option, std::int64_t width, std::int64_t height);
+PixelWindow parse_pixel(std::string_view text, const char* option, std::int64_t width, std::int64_t height);
+
 /// A whole number below 2^64.
 std::uint64_t parse_seed(std::string_view text);
 
 /// Threads as asked for with --threads, or OMP_NUM_THREADS where `asked` is 0. Refuses more than OpenMP and the system
 /// would give (core/base/thread_limit.h). What follows in this thread, such as building trees, uses as many.
 int thread_count(int asked);
+
+/// Where an image goes: a file, whose name says how it is written, or "png:-", "exr:-" or "pfm:-" for the standard
+/// output.
+struct ImageTarget {
+    std::string file;
+    ImageFormat format;
+    bool is_stdout;
+};
+ImageTarget parse_image_target(const std::string& text);
 
 using NamedFiles = std::vector<std::pair<std::string, std::string>>;
 

@@ -1,6 +1,8 @@
 #include <exception>
 #include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -46,6 +48,21 @@ void check_memory(const Scene& scene, const RenderOptions& options, const cluste
                     fmt::format("--width: the sums and images of {} x {} pixels", scene.width, scene.height));
 }
 
+PixelWindow crop_of(const RenderOptions& options, const Scene& scene) {
+    if (options.crop) return parse_window(*options.crop, "--crop", scene.width, scene.height);
+    if (options.pixel) return parse_pixel(*options.pixel, "--pixel", scene.width, scene.height);
+    return {0, scene.width, 0, scene.height};
+}
+
+/// In rising order.
+std::vector<std::uint32_t> pixels_of(const PixelWindow& window, std::int64_t width) {
+    std::vector<std::uint32_t> pixels;
+    for (std::int64_t y = window.y_begin; y < window.y_end; ++y)
+        for (std::int64_t x = window.x_begin; x < window.x_end; ++x)
+            pixels.push_back(static_cast<std::uint32_t>(y * width + x));
+    return pixels;
+}
+
 /// Of the code that a scene runs on, which may be compiled for more than it needs.
 std::size_t stored_record_bytes(const Scene& scene, const ImageSettings& settings, Precision precision) {
     const bool is_double = precision == Precision::Double;
@@ -80,11 +97,16 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
             "srun --mpi=pmix, or give each its --samples, or unset SLURM_STEP_NUM_TASKS where each renders its own",
             ranks.separate_count()));
     if (ranks.count() > 1)
-        for (const auto& [flag, file] : {std::pair{"--trace", options.trace}, {"--cost-image", options.cost_image}})
-            if (!file.empty()) throw InputError(fmt::format("{}: is not made by several ranks", flag));
+        for (const auto& [flag, is_given] : {std::pair{"--trace", !options.trace.empty()},
+                                             {"--cost-image", !options.cost_image.empty()},
+                                             {"--crop", options.crop.has_value()},
+                                             {"--pixel", options.pixel.has_value()}})
+            if (is_given) throw InputError(fmt::format("{}: is not made by several ranks", flag));
     if (ranks.is_first()) return claim(options.checkpoint);
     options.output.clear();
     options.stats.clear();
+    options.status.clear();
+    options.preview = {};
     options.is_quiet = true;
     return nullptr;
 }
@@ -120,6 +142,8 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     check_distinct({{"--output", options.output},
                     {"--checkpoint", options.checkpoint.file},
                     {"--stats", options.stats},
+                    {"--status", options.status},
+                    {"--preview", options.preview.file},
                     {"--trace", options.trace},
                     {"--cost-image", options.cost_image}},
                    {{"the scene", options.scene}});
@@ -132,9 +156,11 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     record.target_error = options.target_error;
     if (options.target_error > 0 && options.spp < 2)
         throw InputError("--spp: must be at least 2 with --target-error: one sample does not tell its error");
+    std::optional<ImageTarget> target;
     if (!options.output.empty()) {
-        image_format(options.output);
-        check_writable(options.output);
+        target = parse_image_target(options.output);
+        if (target->is_stdout) options.is_quiet = true;
+        check_writable(target->file);
     }
     if (!options.stats.empty()) check_writable(options.stats);
     if (!options.cost_image.empty()) {
@@ -163,12 +189,21 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     record.scene_name = scene.name;
     record.width = scene.width;
     record.height = scene.height;
+    record.crop = crop_of(options, scene);
+    std::vector<std::uint32_t> pixels;
+    if (options.crop || options.pixel) {
+        pixels = pixels_of(record.crop, scene.width);
+        record.settings.pixels = &pixels;
+    }
     record.read_s = watch.seconds();
 
     if (ranks.count() > 1) cluster::agree(ranks, shared_terms(scene, record, given));
 
-    CheckpointKeeper checkpoint(options.checkpoint, ranks);
-    const Image image = render_image(scene, options.checkpoint, options.is_quiet, checkpoint, ranks, record);
+    std::optional<Preview> preview;
+    if (!options.preview.file.empty() || !options.preview.server.empty())
+        preview.emplace(options.preview, record.scene_name, record.crop);
+    CheckpointKeeper checkpoint(options.checkpoint, preview ? &*preview : nullptr, ranks);
+    const Image image = render_image(scene, options, checkpoint, ranks, record);
     watch.lap();
     std::exception_ptr failure = checkpoint.failure();  // what cannot be written costs nothing else
     const auto attempt = [&failure](const std::string& file, const auto& write) {
@@ -178,7 +213,8 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
             if (!failure) failure = std::current_exception();
         }
     };
-    attempt(options.output, [&](const auto& file) { write_image(file, image, image_attributes(record)); });
+    attempt(options.output,
+            [&](const auto&) { write_image(target->file, target->format, image, image_attributes(record)); });
     record.write_s = watch.seconds();
     record.total_s = total.seconds();
     attempt(options.stats, [&](const auto& file) { write_json(file, stats_json(record)); });

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <memory>
 #include <numeric>
 
 #include <fmt/format.h>
 
 #include "cli/engines.h"
+#include "cli/path_printer.h"
 #include "cli/progress_bar.h"
+#include "cli/status_file.h"
 #include "cli/stopwatch.h"
 #include "cluster/exchange.h"
 #include "cluster/rank_engine.h"
@@ -50,8 +53,8 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
         settings.end_sample = gap.end;
         if (settings.first_sample >= settings.end_sample) continue;
         if (session == nullptr) session = engine.begin(scene, settings, sums.framebuffer);
-        if (!checkpoint.is_kept()) {
-            session->add({settings.first_sample, settings.end_sample, nullptr});
+        if (!checkpoint.wants_pieces()) {
+            session->add({settings.first_sample, settings.end_sample, settings.pixels});
             sums.ranges = with_range(std::move(sums.ranges), {settings.first_sample, settings.end_sample});
             continue;
         }
@@ -70,8 +73,8 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
 }
 
 template <class Scalar>
-Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_quiet, CheckpointKeeper& checkpoint,
-                cluster::Ranks& ranks, RenderRecord& record) {
+Image render_in(const Scene& scene, const RenderOptions& options, CheckpointKeeper& checkpoint, cluster::Ranks& ranks,
+                RenderRecord& record) {
     Stopwatch watch;
     const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
     record.features = compiled.features;
@@ -87,9 +90,10 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
                     0,
                     Framebuffer(compiled.width, compiled.height, fixed_point(compiled, record.settings, record.spp),
                                 is_adaptive ? Halves::Apart : Halves::Together)};
-    if (options.is_resumed) {
+    if (options.checkpoint.is_resumed) {
         if (ranks.is_first())
-            sums = load_checkpoint(options, sums, {record.settings.first_sample, record.settings.end_sample});
+            sums =
+                load_checkpoint(options.checkpoint, sums, {record.settings.first_sample, record.settings.end_sample});
         cluster::broadcast(ranks, sums);
     }
     Progress progress;
@@ -101,7 +105,8 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
     {
         // How many samples an adaptive render will take is not known.
         const std::int64_t total = is_adaptive ? 0 : path_count(compiled, record.settings);
-        const ProgressBar bar(progress, total, {"M paths/s", 1e-6}, is_quiet);
+        const StatusFile status(options.status, "render", "paths", progress, total);
+        const ProgressBar bar(progress, total, {"M paths/s", 1e-6}, options.is_quiet);
         const std::unique_ptr<Engine> engine = make_engine(record, ranks);
         record.report = render_missing(*engine, compiled, record, sums, record.adaptive, checkpoint);
     }
@@ -111,12 +116,14 @@ Image render_in(const Scene& scene, const CheckpointOptions& options, bool is_qu
     }
     checkpoint.finish(sums);
     record.settings.progress = nullptr;
-    record.hash = sums.framebuffer.hash();
     record.sum_step = 1 / sums.framebuffer.fixed_point().scale();
     record.dimmest_light = dimmest_light(scene);
     record.samples_done = is_adaptive ? std::llround(record.adaptive.mean_samples()) : sums.sample_count();
-    Image image = is_adaptive ? sums.framebuffer.image(record.adaptive.sample_counts)
-                              : sums.framebuffer.image(record.samples_done);
+    if constexpr (std::same_as<Scalar, float>)
+        if (options.pixel) print_paths(scene, compiled, record, sums.framebuffer);
+    const Framebuffer shown = is_cropped(record) ? sums.framebuffer.cut(record.crop) : std::move(sums.framebuffer);
+    record.hash = shown.hash();
+    Image image = is_adaptive ? shown.image(record.adaptive.sample_counts) : shown.image(record.samples_done);
     record.mean_radiance =
         std::accumulate(image.rgb.begin(), image.rgb.end(), 0.0) / static_cast<double>(image.rgb.size());
     return image;
@@ -143,11 +150,10 @@ ImageKey image_key(const Scene& scene, const RenderRecord& record) {
             {"target_error", fmt::to_string(record.target_error)}};
 }
 
-Image render_image(const Scene& scene, const CheckpointOptions& options, bool is_quiet, CheckpointKeeper& checkpoint,
+Image render_image(const Scene& scene, const RenderOptions& options, CheckpointKeeper& checkpoint,
                    cluster::Ranks& ranks, RenderRecord& record) {
-    return record.precision == Precision::Double
-               ? render_in<double>(scene, options, is_quiet, checkpoint, ranks, record)
-               : render_in<float>(scene, options, is_quiet, checkpoint, ranks, record);
+    return record.precision == Precision::Double ? render_in<double>(scene, options, checkpoint, ranks, record)
+                                                 : render_in<float>(scene, options, checkpoint, ranks, record);
 }
 
 }  // namespace raypool::cli

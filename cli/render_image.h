@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/checkpoint_keeper.h"
+#include "cli/render_options.h"
 #include "cli/stats_json.h"
 #include "cluster/ranks.h"
 #include "core/image/image.h"
@@ -13,10 +14,10 @@ namespace raypool::cli {
 /// and ranks must have it in common.
 ImageKey image_key(const Scene& scene, const RenderRecord& record);
 
-/// Renders what the checkpoint of `options`, if one is resumed, lacks. Reads the settings in `record`, and fills in
+/// Renders what the checkpoint, if one is resumed, lacks. Reads the settings in `record`, and fills in
 /// what was made. Where the checkpoint was asked to stop, the image is of the samples so far. Of several ranks, all
 /// call it, and rank 0 gets the image; what others get means nothing.
-Image render_image(const Scene& scene, const CheckpointOptions& options, bool is_quiet, CheckpointKeeper& checkpoint,
+Image render_image(const Scene& scene, const RenderOptions& options, CheckpointKeeper& checkpoint,
                    cluster::Ranks& ranks, RenderRecord& record);
 
 }  // namespace raypool::cli

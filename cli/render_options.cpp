@@ -24,6 +24,9 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     command.add_option("--spp", options.spp, "Samples per pixel (default: 100)")
         ->check(CLI::Range(std::int64_t{1}, kMostSpp));
     command.add_option("--samples", options.samples, "Only samples A:B of them, counted from 0, without B");
+    command.add_option("--crop", options.crop, "Only the pixels X0,Y0,X1,Y1: columns X0 to X1 - 1, rows Y0 to Y1 - 1");
+    command.add_option("--pixel", options.pixel,
+                       "Only the pixel X,Y, with every vertex of its paths on the standard output");
     command
         .add_option("--target-error", options.target_error,
                     "Give pixels samples, at most --spp, until the image's estimated RMSE is at most this radiance")
@@ -44,6 +47,15 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     command.add_option("--every", options.checkpoint.every_s, "Seconds between checkpoints (default: 60)")
         ->check(check_within(0, 1e9));
     command.add_flag("--resume", options.checkpoint.is_resumed, "Go on from the checkpoint");
+    command
+        .add_option("--preview", options.preview.file,
+                    "Image file that is written anew every two seconds while the render goes on")
+        ->check(check_file_name);
+    command.add_option("--display-server", options.preview.server,
+                       "HOST:PORT of a program that shows images as they come (tev)");
+    command
+        .add_option("--status", options.status, "Write how far the render is to this file every two seconds, as JSON")
+        ->check(check_file_name);
     command.add_option("--stats", options.stats, "Write all figures to this file, as JSON")->check(check_file_name);
     command
         .add_option("--trace", options.trace,

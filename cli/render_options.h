@@ -10,9 +10,10 @@
 #include "cli/checkpoint_keeper.h"
 #include "cli/common_options.h"
 #include "cli/pool_options.h"
-#include "gpu/settings.h"
+#include "cli/preview.h"
 #include "core/image/cost_image.h"
 #include "core/runtime/settings.h"
+#include "gpu/settings.h"
 
 namespace raypool::cli {
 
@@ -20,17 +21,21 @@ namespace raypool::cli {
 struct RenderOptions : CommonOptions {
     std::string output;
     std::string stats;
+    std::string status;
     std::string trace;
     std::string cost_image;
     std::string cost = "tests";
     std::string engine;  ///< empty: the fastest that can do what is asked for
     std::int64_t spp = 100;
     std::optional<std::string> samples;
+    std::optional<std::string> crop;
+    std::optional<std::string> pixel;
     double target_error = 0;
     std::string precision = "float";
     bool count_work = false;
     bool is_quiet = false;
     CheckpointOptions checkpoint;
+    PreviewOptions preview;
     PoolOptions pool;
     std::string gpu_form;  ///< empty: the default
 };

@@ -67,8 +67,13 @@ void print_summary(const RenderRecord& record) {
     const std::string lights = settings.light_sampling == LightSampling::None
                                    ? ""
                                    : fmt::format(", light sampling {}", to_string(settings.light_sampling));
-    print("{}: {} x {}, samples {} to {} of {}, depth {}{}, {}seed {}, {}\n", record.scene_name, record.width,
-          record.height, settings.first_sample, settings.end_sample, record.spp, settings.depth,
+    const PixelWindow& crop = record.crop;
+    const std::string part = is_cropped(record)
+                                 ? fmt::format(", of these columns {} to {} and rows {} to {}", crop.x_begin,
+                                               crop.x_end - 1, crop.y_begin, crop.y_end - 1)
+                                 : "";
+    print("{}: {} x {}{}, samples {} to {} of {}, depth {}{}, {}seed {}, {}\n", record.scene_name, record.width,
+          record.height, part, settings.first_sample, settings.end_sample, record.spp, settings.depth,
           (settings.roulette ? " and roulette" : "") + lights, settings.sampler == Sampler::Sobol ? "sobol, " : "",
           settings.seed, record.precision == Precision::Float ? "float" : "double");
     const std::string ranks = record.ranks.empty() ? "" : fmt::format("{} ranks of ", record.ranks.size());

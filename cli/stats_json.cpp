@@ -14,6 +14,10 @@ namespace raypool::cli {
 
 using nlohmann::json;
 
+bool is_cropped(const RenderRecord& record) {
+    return record.crop != PixelWindow{0, record.width, 0, record.height};
+}
+
 std::any engine_options(const RenderRecord& record) {
     if (engines().find(record.engine).has_pool) return record.pool;
     return record.gpu;
@@ -44,6 +48,10 @@ json settings_json(const RenderRecord& record) {
                 {"engine", record.engine},
                 {"threads", settings.threads},
                 {"count_work", settings.count_work}};
+    if (is_cropped(record)) {
+        const PixelWindow& crop = record.crop;
+        result["crop"] = {crop.x_begin, crop.y_begin, crop.x_end, crop.y_end};
+    }
     if (loops_over_image(record)) {
         result["schedule"] = to_string(settings.schedule);
         if (has_grain(settings.schedule)) result["grain"] = to_string(settings.grain);

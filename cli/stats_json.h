@@ -20,6 +20,7 @@ struct RenderRecord {
     Features features;
     std::int64_t width = 0;
     std::int64_t height = 0;
+    PixelWindow crop;  ///< the pixels that are rendered: all, or fewer
     std::int64_t spp = 0;
     Precision precision = Precision::Float;
     std::string engine;
@@ -41,6 +42,9 @@ struct RenderRecord {
     double write_s = 0;             ///< sums to image file
     double total_s = 0;
 };
+
+/// Whether fewer pixels are rendered than the image has.
+bool is_cropped(const RenderRecord& record);
 
 /// The settings of its own that the engine takes.
 std::any engine_options(const RenderRecord& record);

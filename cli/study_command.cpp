@@ -13,6 +13,7 @@
 #include "cli/options.h"
 #include "cli/print.h"
 #include "cli/progress_bar.h"
+#include "cli/status_file.h"
 #include "cli/stop_signals.h"
 #include "core/base/error.h"
 
@@ -33,6 +34,7 @@ struct StudyCommand {
     studies::StudyOptions options;
     std::string seed = "0";
     std::string output;
+    std::string status;
     bool is_fresh = false;
     bool is_quiet = false;
 };
@@ -52,6 +54,7 @@ int run(const studies::Study& study, const fs::path& folder, StudyCommand& comma
     Progress progress;
     bool is_complete = false;
     {
+        const StatusFile status(command.status, study.name, "runs", progress, runs);
         const ProgressBar bar(progress, runs, {"runs/s", 1}, command.is_quiet);
         is_complete =
             studies::run_study(study, command.options, folder, {command.is_fresh, &StopSignals::received(), &progress});
@@ -115,6 +118,9 @@ void add_study_command(CLI::App& app, int& status) {
     sub->add_option("--seed", command->seed, "Seed of all random numbers (default: 0)");
     sub->add_option("--only", options.only,
                     "A regular expression: only cases whose names in data.csv match it, a part of a long study");
+    sub->add_option("--status", command->status,
+                    "Write how many runs are done and left to this file every two seconds, as JSON")
+        ->check(check_file_name);
     sub->add_flag("--quiet", command->is_quiet, "Print nothing");
     sub->callback([command, scene, &status] {
         command->options.is_scene_given = scene->count() > 0;

@@ -17,7 +17,8 @@ option(RAYPOOL_FUZZ "Link the fuzz targets with libFuzzer; asks for clang++ and 
 option(RAYPOOL_WERROR "Treat warnings as errors" OFF)
 
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64)
-  set(RAYPOOL_ARCH_FLAG -mcpu=${RAYPOOL_ARCH})
+  string(REPLACE x86-64-v3 generic cpu ${RAYPOOL_ARCH})  # of the preset portable
+  set(RAYPOOL_ARCH_FLAG -mcpu=${cpu})
 else()
   set(RAYPOOL_ARCH_FLAG -march=${RAYPOOL_ARCH})
 endif()

@@ -25,12 +25,14 @@ function(raypool_ptx name source test)
     "-O1;-Wno-unused-function;-Wno-unused-label;-Wno-unused-variable;-Wno-unused-but-set-variable;-Wno-overflow")
   raypool_gpu_program(${name})
 endfunction()
+# In a bundle for another machine (scripts/gpu_bundle) they find scenes where they are run, and are not run where they
+# are built.
+set(RAYPOOL_GPU_SCENES ${PROJECT_SOURCE_DIR} CACHE STRING "Where tests on a GPU look for the folder scenes")
 function(raypool_gpu_program name)
   target_precompile_headers(${name} REUSE_FROM raypool_precompiled_not_hot)
   target_link_libraries(${name} PRIVATE raypool_gpu raypool_recursive raypool_core raypool_not_hot GTest::gtest_main
                                         raypool_warnings)
-  target_compile_definitions(${name} PRIVATE RAYPOOL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-                                             RAYPOOL_FAILURE_FOLDER="${CMAKE_CURRENT_BINARY_DIR}/failed")
+  target_compile_definitions(${name} PRIVATE RAYPOOL_SOURCE_DIR="${RAYPOOL_GPU_SCENES}" RAYPOOL_FAILURE_FOLDER="out/failed")
 endfunction()
 
 raypool_ptx(gpu_ptx_test gpu/kernels.cu gpu/ptx_test.cpp ${RAYPOOL_NVCC_ROUNDING})
@@ -42,7 +44,7 @@ add_executable(gpu_cuda_test gpu/cuda_test.cpp ${CMAKE_CURRENT_BINARY_DIR}/opera
 raypool_gpu_program(gpu_cuda_test)
 target_link_libraries(gpu_cuda_test PRIVATE raypool_cuda)
 foreach(program gpu_ptx_test gpu_ptx_operations_test gpu_cuda_test)
-  gtest_discover_tests(${program} PROPERTIES LABELS equivalence DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(${program} PROPERTIES LABELS equivalence DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
 endforeach()
 
 # Were the compiler to fuse operations or to approximate them, it would be found out.

@@ -38,3 +38,10 @@ if(NOT RAYPOOL_SANITIZE)  # sanitizers are no part of the package
   set_tests_properties(install PROPERTIES FIXTURES_SETUP installed)
   set_tests_properties(consumer PROPERTIES FIXTURES_REQUIRED installed)
 endif()
+
+# The Debian package, as far as it can be tried without installing it.
+find_program(RAYPOOL_DPKG_DEB dpkg-deb)
+if(RAYPOOL_DPKG_DEB AND NOT RAYPOOL_SANITIZE)
+  add_test(NAME package COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/package_test.py ${PROJECT_BINARY_DIR})
+  set_tests_properties(package PROPERTIES LABELS slow)
+endif()

@@ -29,6 +29,7 @@ ALLOWED["cli"] = {*CORE, *ENGINES, "cluster", "bench/accuracy", "bench/peers", "
 
 # Libraries that only these folders may include, so that no other needs them.
 LIBRARIES = {"png.h": {"core/image"}, "Imf": {"core/image"}, "mpi.h": {"cluster"}, "embree3/": {"bench/peers"}, "cuda_runtime": {"gpu"},
+             "immintrin.h": {"core/math"}, "xmmintrin.h": {"core/math"}, "arm_neon.h": {"core/math"},
              "CLI/": {"cli"}, "xxhash.h": {"core/base", "core/scene", "core/film", "bench/accuracy"},
              "boost/": {"core/image", "bench/accuracy"}}
 
@@ -41,7 +42,7 @@ def folder_of(path):
 def includes():
     """(file, folder, what it includes) for each include of the product's C++ files."""
     for top in sorted(SOURCE.iterdir()):
-        if not top.is_dir() or top.name.startswith((".", "build")) or top.name == "tests":
+        if not top.is_dir() or top.name.startswith((".", "build")) or top.name in ("docs", "tests"):
             continue
         for path in sorted(top.rglob("*")):
             if path.suffix not in (".h", ".cpp", ".cu"):

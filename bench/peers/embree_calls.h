@@ -11,7 +11,7 @@
 
 namespace raypool::peers {
 
-/// A packet: as many rays as fill a register, 16 with AVX-512, else 8.
+/// A packet: as many rays as fill a register, 16 with AVX-512, 8 with AVX2, 4 on ARM.
 using Packet = stdx::native_simd<float>;
 
 /// What Embree has for so many rays at a time: its structures, and its calls.
@@ -40,6 +40,8 @@ struct EmbreePacketCalls {
         occlude(valid, scene, context, rays);
     }
 };
+template <>
+struct EmbreeCalls<4> : EmbreePacketCalls<RTCRayHit4, RTCRay4, rtcIntersect4, rtcOccluded4> {};
 template <>
 struct EmbreeCalls<8> : EmbreePacketCalls<RTCRayHit8, RTCRay8, rtcIntersect8, rtcOccluded8> {};
 template <>

@@ -92,14 +92,12 @@ std::string commit_of(const fs::path& command) {
     return found.is_object() ? found.value(json::json_pointer("/environment/commit"), std::string()) : std::string();
 }
 
-constexpr bool kCanRunInValgrind = kRegisterBytes < 64;  ///< it knows no AVX-512
-
 CachegrindCommand find_command() {
     if (!has_valgrind()) return {{}, "valgrind is not installed"};
     const fs::path own = fs::read_symlink("/proc/self/exe");
-    if (kCanRunInValgrind) return {own, ""};
+    if (kIsKnownToValgrind) return {own, ""};
     const fs::path twin = own.parent_path() / "../../portable/cli/raypool";
-    if (!fs::exists(twin)) return {{}, "valgrind knows no AVX-512: build the preset portable"};
+    if (!fs::exists(twin)) return {{}, "valgrind knows no AVX-512 and no SVE: build the preset portable"};
     if (commit_of(twin) != environment_json().at("commit").get<std::string>())
         return {{}, "the build of the preset portable is of another commit: build it again"};
     return {fs::canonical(twin), ""};

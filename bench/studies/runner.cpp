@@ -14,6 +14,8 @@
 #include "core/base/json_file.h"
 #include "core/base/text.h"
 #include "core/runtime/environment.h"
+#include "core/scene/scene_hash.h"
+#include "core/scene/scene_reader.h"
 
 namespace raypool::studies {
 
@@ -49,7 +51,10 @@ json identity(const Study& study, const StudyOptions& options, const std::vector
                {"width", options.width},     {"spp", options.spp},
                {"depth", options.depth},     {"threads", options.threads},
                {"repeats", options.repeats}, {"seed", options.seed}};
-    if (options.is_scene_given) asked["scene_given"] = true;
+    if (options.is_scene_given) {
+        asked["scene_given"] = true;
+        asked["scene_hash"] = scene_hash(load_scene(options.scene));  // a file may change under its name
+    }
     if (!options.only.empty()) asked["only"] = valid_utf8(options.only);
     json described = json::array();
     for (const Column& column : columns) described.push_back({{"name", column.name}, {"what", column.what}});

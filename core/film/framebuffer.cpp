@@ -49,6 +49,17 @@ std::string Framebuffer::hash() const {
     return fmt::format("{:016x}", XXH3_64bits_withSeed(sums_.data(), sums_.size() * sizeof(std::int64_t), seed));
 }
 
+Framebuffer Framebuffer::cut(const PixelWindow& window) const {
+    RAYPOOL_CHECK(0 <= window.x_begin && window.x_end <= width_ && 0 <= window.y_begin && window.y_end <= height_,
+                  "a part lies within the whole");
+    Framebuffer part(window.x_end - window.x_begin, window.y_end - window.y_begin, fixed_, halves_);
+    const auto of_a_pixel = static_cast<std::ptrdiff_t>(sums_.size()) / (width_ * height_);
+    for (std::int64_t y = 0; y < part.height_; ++y)
+        std::copy_n(sums_.begin() + ((window.y_begin + y) * width_ + window.x_begin) * of_a_pixel,
+                    part.width_ * of_a_pixel, part.sums_.begin() + y * part.width_ * of_a_pixel);
+    return part;
+}
+
 Image Framebuffer::image(std::int64_t sample_count) const {
     Image image(width_, height_);
     const double scale = 1 / (fixed_.scale() * static_cast<double>(std::max<std::int64_t>(sample_count, 1)));

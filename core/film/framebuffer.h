@@ -69,6 +69,9 @@ class Framebuffer {
     /// The sum of all samples of a pixel.
     [[nodiscard]] FixedRgb sum(std::size_t pixel) const;
 
+    /// A part of it, as a framebuffer of its own.
+    [[nodiscard]] Framebuffer cut(const PixelWindow& window) const;
+
     /// 16 hexadecimal digits over the size, the step and every sum (XXH3).
     [[nodiscard]] std::string hash() const;
 

@@ -58,7 +58,8 @@ WideBvh<Scalar, width> collapse(const BinaryBvh& tree) {
     return wide;
 }
 
-template WideBvh<float, 4> collapse(const BinaryBvh&);  // of tests: another tree, the same hits
+// The widths of all processors (kTreeWidth), so that tests walk other trees than this one's, too.
+template WideBvh<float, 4> collapse(const BinaryBvh&);
 template WideBvh<float, 8> collapse(const BinaryBvh&);
 template WideBvh<double, 2> collapse(const BinaryBvh&);
 template WideBvh<double, 4> collapse(const BinaryBvh&);

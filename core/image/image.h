@@ -10,6 +10,13 @@
 
 namespace raypool {
 
+/// Columns [x_begin, x_end) of rows [y_begin, y_end).
+struct PixelWindow {
+    std::int64_t x_begin = 0, x_end = 0;
+    std::int64_t y_begin = 0, y_end = 0;
+    bool operator==(const PixelWindow&) const = default;
+};
+
 struct Image {
     Image() = default;
     Image(std::int64_t width, std::int64_t height)

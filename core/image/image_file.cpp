@@ -66,9 +66,12 @@ ImageFormat image_format(const fs::path& path) {
 }
 
 void write_image(const fs::path& path, const Image& image, const ImageAttributes& attributes) {
+    write_image(path, image_format(path), image, attributes);
+}
+
+void write_image(const fs::path& path, ImageFormat format, const Image& image, const ImageAttributes& attributes) {
     RAYPOOL_CHECK(image.width > 0 && image.height > 0 && std::ssize(image.rgb) == image.width * image.height * 3,
                   "an image has three values for each of its pixels");
-    const ImageFormat format = image_format(path);
     ImageAttributes texts;
     for (const auto& [name, text] : attributes) texts.emplace(name, valid_utf8(text));
     const Bytes bytes = naming(path, "write", [&] {

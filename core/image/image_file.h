@@ -48,13 +48,8 @@ using ImageAttributes = std::map<std::string, std::string>;
 ImageFormat image_format(const std::filesystem::path& path);
 
 void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes);
-
-/// Columns [x_begin, x_end) of rows [y_begin, y_end).
-struct PixelWindow {
-    std::int64_t x_begin = 0, x_end = 0;
-    std::int64_t y_begin = 0, y_end = 0;
-    bool operator==(const PixelWindow&) const = default;
-};
+void write_image(const std::filesystem::path& path, ImageFormat format, const Image& image,
+                 const ImageAttributes& attributes);
 
 /// What a file holds.
 struct ImageContents {

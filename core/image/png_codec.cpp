@@ -181,7 +181,7 @@ png_byte srgb_code(float linear) {
 }
 
 png_text text_chunk(const std::string& name, const std::string& value) {
-    const bool is_ascii = std::all_of(value.begin(), value.end(), [](char c) { return c > 0; });
+    const bool is_ascii = std::all_of(value.begin(), value.end(), [](unsigned char c) { return c > 0 && c < 0x80; });
     png_text text{};
     text.compression = is_ascii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;  // tEXt is Latin-1, iTXt UTF-8
     text.key = const_cast<char*>(name.c_str());

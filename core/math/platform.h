@@ -21,4 +21,3 @@
 #else
 #define RAYPOOL_INLINE [[gnu::always_inline]] RAYPOOL_HOST_DEVICE inline
 #endif
-

@@ -16,8 +16,10 @@ namespace raypool {
 /// Of the registers that code is compiled for.
 #ifdef __AVX512F__
 inline constexpr int kRegisterBytes = 64;
+inline constexpr bool kIsKnownToValgrind = false;
 #else
 inline constexpr int kRegisterBytes = 32;
+inline constexpr bool kIsKnownToValgrind = true;
 #endif
 
 namespace detail {
@@ -45,7 +47,7 @@ inline constexpr bool kJudgesBeforeRounding = false;
     return pointer;
 }
 
-/// As gcc names them, from the oldest on.
+/// As gcc names them, and those of ARM as Linux does, from the oldest on.
 inline constexpr const char* kInstructionSets[] = {
     "sse2",
 #ifdef __SSE3__
@@ -89,9 +91,14 @@ inline constexpr const char* kInstructionSets[] = {
 #endif
 };
 
-#else  // aarch64
+#else                     // aarch64
 
 inline constexpr int kRegisterBytes = 16;
+#ifdef __ARM_FEATURE_SVE  // which a compiler may use for loops of its own
+inline constexpr bool kIsKnownToValgrind = false;
+#else
+inline constexpr bool kIsKnownToValgrind = true;
+#endif
 
 inline std::uint64_t floating_point_modes() {
     std::uint64_t modes;

@@ -10,7 +10,7 @@ namespace raypool {
 
 /// What the compiler was allowed to use, whatever the flags call it (-march=native), and what the kernels use of it.
 struct CodeWidths {
-    std::vector<std::string> instruction_sets;  ///< as gcc names them, from SSE2 on in the order of their age
+    std::vector<std::string> instruction_sets;  ///< kInstructionSets (core/math/processor.h)
     int float_lanes;                            ///< rays that a stage of the pool treats at a time
     int double_lanes;
     int float_tree_width;  ///< boxes, or primitives, that a ray is tested against at a time

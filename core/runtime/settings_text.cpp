@@ -124,12 +124,24 @@ LoopSchedule chosen_schedule(const std::optional<std::string>& schedule, const s
 }
 
 void set_width(Scene& scene, std::int64_t width) {
+    set_size(scene, width, 0);
+}
+
+void set_size(Scene& scene, std::int64_t width, std::int64_t height) {
     constexpr std::int64_t kMostSide = 65536;
-    const double shape = static_cast<double>(scene.height) / static_cast<double>(scene.width);
-    const std::int64_t height = std::max<std::int64_t>(1, std::llround(static_cast<double>(width) * shape));
-    if (width < 1 || width > kMostSide || height > kMostSide)
-        throw InputError(
-            fmt::format("--width: must give an image of 1 to {} pixels on either side, got {}", kMostSide, width));
+    const auto scaled = [](std::int64_t side, std::int64_t to, std::int64_t from) {
+        const double shape = static_cast<double>(to) / static_cast<double>(from);
+        return std::max<std::int64_t>(1, std::llround(static_cast<double>(side) * shape));
+    };
+    if (width == 0 && height == 0) return;
+    const char* option = width == 0 ? "--height" : "--width";
+    const std::int64_t asked = width == 0 ? height : width;
+    if (width == 0) width = scaled(height, scene.width, scene.height);
+    if (height == 0) height = scaled(width, scene.height, scene.width);
+    for (const std::int64_t side : {width, height})
+        if (side < 1 || side > kMostSide)
+            throw InputError(fmt::format("{}: must give an image of 1 to {} pixels on either side, got {}", option,
+                                         kMostSide, asked));
     scene.width = width;
     scene.height = height;
 }

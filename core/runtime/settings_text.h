@@ -41,5 +41,7 @@ std::optional<std::int64_t> parse_integer(std::string_view text, std::int64_t le
 
 /// Sets the image's width, and its height so that the shape stays. Refuses what is not in [1, 65536].
 void set_width(Scene& scene, std::int64_t width);
+/// Sets both; of which one is 0, that one so that the shape stays; nothing where both are. Refuses the same.
+void set_size(Scene& scene, std::int64_t width, std::int64_t height);
 
 }  // namespace raypool

@@ -68,6 +68,7 @@ Scene builtin_scene(const std::string& name) {
 }
 
 Scene load_scene(const std::string& file_or_builtin_name) {
+    if (file_or_builtin_name == "-") return parse_scene(read_text("/dev/stdin"), "stdin", {});
     std::error_code ignored;  // a name that cannot even be looked up is no file
     const fs::file_status status = fs::status(file_or_builtin_name, ignored);
     const bool is_file = fs::exists(status) && !(fs::is_directory(status) && find_builtin(file_or_builtin_name));

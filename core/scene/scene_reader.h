@@ -13,7 +13,8 @@
 
 namespace raypool {
 
-/// What a user names: a file if there is one of that name, else a built-in scene.
+/// What a user names: "-" for the standard input, whose files are those of the working folder; a file if there is one
+/// of that name, else a built-in scene.
 Scene load_scene(const std::string& file_or_builtin_name);
 
 Scene read_scene(const std::filesystem::path& file);

@@ -138,9 +138,8 @@ def goal(rows, engine, claim, threads, least, note):
 
 def goals(run, rows):
     """What the project set out to reach."""
-    is_avx512 = run["environment"]["simd"]["stage_lanes"]["float"] == 16
-    yield goal(rows, "beam", "a pool is much faster than the best recursion", 1, 4 if is_avx512 else 2.5,
-               " (AVX-512)" if is_avx512 else " (AVX2)")
+    least, registers = {16: (4, "AVX-512"), 8: (2.5, "AVX2"), 4: (1, "NEON")}[run["environment"]["simd"]["stage_lanes"]["float"]]
+    yield goal(rows, "beam", "a pool is much faster than the best recursion", 1, least, f" ({registers})")
     if max(numbers(rows, "threads")) == 2:
         yield goal(rows, "shared-stream", "the paper's shared pool, with wide stages, is faster than recursion", 2, 1.5, "")
 

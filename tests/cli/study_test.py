@@ -8,7 +8,7 @@ import signal
 import subprocess
 import time
 
-from command import CommandTest, main
+from command import SCENE, CommandTest, changed, main
 
 TINY = ["--quick", "--width", "32", "--spp", "2", "--repeats", "1"]
 
@@ -77,6 +77,16 @@ class StudyTest(CommandTest):
                     for image in ("acne_naive", "acne_ours", "acne_difference"):
                         self.assertTrue((self.folder / "out/stability" / f"{image}.png").exists(), image)
                     self.check_verdicts(rows_of(self.folder / "out/stability"))
+
+    def test_a_scene_that_has_changed_is_another_run(self):
+        study = ("study", "gpu", *TINY, "--threads", "1", "--scene", "scene.json", "--only", "occupancy")
+        self.run_well(*study)
+        self.run_well(*study, "--status", "status.json")
+        status = json.loads((self.folder / "status.json").read_text())
+        self.assertEqual((status["what"], status["state"], status["unit"], status["done"]), ("gpu", "done", "runs", 3))
+        self.write("scene.json", changed(SCENE, "/shapes/0/radius", 0.5))
+        self.assert_refused(*study, named=["out/gpu", "options differs", "--fresh"])
+        self.run_well(*study, "--fresh")
 
     def test_signal_loses_no_finished_row_and_repeats_none(self):
         for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGUSR1, 138)):

@@ -1,4 +1,5 @@
-// Renders a built-in scene with the installed library and prints the hash of the image.
+// Renders a built-in scene with the installed library, once more by the GPU engine's bodies, and prints the hash of the
+// image.
 #include <cstdio>
 #include <string>
 
@@ -6,6 +7,8 @@
 #include "core/runtime/engine.h"
 #include "core/scene/scene_reader.h"
 #include "core/shading/compiled_scene.h"
+#include "gpu/engine.h"
+#include "gpu/host_device.h"
 #include "recursive/engine.h"
 
 int main() {
@@ -16,12 +19,14 @@ int main() {
 
     raypool::RenderSettings settings;
     settings.end_sample = 4;
-    raypool::Framebuffer framebuffer(scene.width, scene.height,
-                                     raypool::FixedPoint::make(settings.end_sample, compiled.max_radiance));
-    const raypool::recursive::RecursiveEngine engine;
-    const raypool::RenderReport report = engine.render(compiled, settings, framebuffer);
-
-    const std::string hash = framebuffer.hash();
-    std::printf("%s: %lld paths, hash %s\n", scene.name.c_str(), static_cast<long long>(report.paths()), hash.c_str());
-    return hash.empty() || report.paths() != 32 * 18 * 4 ? 1 : 0;
+    const auto hash_by = [&](const raypool::Engine& engine) {
+        raypool::Framebuffer framebuffer(scene.width, scene.height,
+                                         raypool::FixedPoint::make(settings.end_sample, compiled.max_radiance));
+        const raypool::RenderReport report = engine.render(compiled, settings, framebuffer);
+        return report.paths() == 32 * 18 * 4 ? framebuffer.hash() : std::string();
+    };
+    const std::string hash = hash_by(raypool::recursive::RecursiveEngine());
+    std::printf("%s: hash %s\n", scene.name.c_str(), hash.c_str());
+    const raypool::gpu::GpuEngine gpu({}, raypool::gpu::host_device);
+    return !hash.empty() && hash_by(gpu) == hash ? 0 : 1;
 }

@@ -3,8 +3,9 @@
 
 Usage: check_docs.py REPOSITORY RAYPOOL
 
-`raypool` and the generators of scenes/ are run, in their order on the page, in a scratch folder that looks like the
-repository and whose files go away. Other scripts of the repository are not run; they must exist and be executable. Presets must exist.
+`raypool`, the generators of scenes/ and the programs of docs/lab/ are run, in their order on the page, in a scratch folder that
+looks like the repository and whose files go away. Other scripts of the repository are not run; they must exist and be executable.
+Presets must exist. A block marked ```json NAME is written to that file of the scratch folder before the page's commands run.
 """
 import json
 import os
@@ -16,7 +17,7 @@ import tempfile
 from pathlib import Path
 
 SECONDS_PER_COMMAND = 120
-RUN = ("raypool", "scenes/generate", "scenes/generate_mesh")
+RUN = ("raypool", "scenes/generate", "scenes/generate_mesh", "docs/lab/", "g++", "out/")  # how a program that is run begins
 NEVER_RUN = {"cmake", "ctest", "git", "cd", "clang-format"}
 
 
@@ -37,13 +38,18 @@ def commands(page):
                 pending = ""
 
 
+def write_files(page, scratch):
+    for name, content in re.findall(r"^```json (\S+)\n(.*?)^```$", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE):
+        (scratch / name).write_text(content, encoding="utf-8")
+
+
 def problem_with(command, repository, scratch, raypool, presets):
     """What is wrong with a command, or None."""
     words = shlex.split(command, comments=True)
     while "=" in words[0]:  # a variable for the command alone
         words.pop(0)
     program = words[0]
-    if program in RUN:
+    if program.startswith(RUN):
         environment = dict(os.environ, PATH=f"{raypool.parent}{os.pathsep}{os.environ['PATH']}")
         result = subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=scratch, env=environment, text=True,
                                 stdin=subprocess.DEVNULL, capture_output=True, timeout=SECONDS_PER_COMMAND)
@@ -68,7 +74,7 @@ def broken_links(page):
 def main():
     repository, raypool = (Path(argument).resolve() for argument in sys.argv[1:])
     presets = {preset["name"] for preset in json.loads((repository / "CMakePresets.json").read_text())["configurePresets"]}
-    pages = [*sorted(repository.glob("*.md")), *sorted(repository.glob("docs/*.md"))]
+    pages = [path for pattern in ("*.md", "docs/*.md", "docs/lab/*.md") for path in sorted(repository.glob(pattern))]
     problems, run_count = [], 0
     with tempfile.TemporaryDirectory() as name:
         scratch = Path(name)
@@ -78,6 +84,7 @@ def main():
         (scratch / "out").mkdir()
 
         for page in pages:
+            write_files(page, scratch)
             for number, command in commands(page):
                 run_count += command.startswith(RUN)
                 problem = problem_with(command, repository, scratch, raypool, presets)

@@ -24,7 +24,7 @@ inline void require(bool is_true, const char* rule) {
 
 /// A message repeats what it found in the file, and goes to a user's terminal.
 inline void require_one_line(std::string_view message) {
-    const auto is_control = [](char c) { return (c >= 0 && c < 0x20) || c == 0x7f; };
+    const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
     require(!message.empty() && std::none_of(message.begin(), message.end(), is_control), "one printable line");
 }
 

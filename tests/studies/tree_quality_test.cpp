@@ -40,11 +40,12 @@ TEST(TreeQuality, IsWhatARandomLineMeets) {
     const Box part{{1, 0, 0}, {1, 1, 1}};   // a square, of area 2
     TriangleTree<float> tree;
     tree.nodes = {node_of({{left, ~0}, {right, 1}}), node_of({{right, ~1}, {part, ~2}})};
-    tree.blocks = {block_of(8), block_of(2), block_of(2)};
+    constexpr int kWidth = kTreeWidth<float>;
+    tree.blocks = {block_of(kWidth), block_of(2), block_of(2)};
     const TreeQuality quality = tree_quality(tree);
     EXPECT_DOUBLE_EQ(quality.nodes, 1 + 0.6);
     EXPECT_DOUBLE_EQ(quality.leaves, 0.6 + 0.6 + 0.2);
-    EXPECT_DOUBLE_EQ(quality.leaf_fill, 12.0 / 24);
+    EXPECT_DOUBLE_EQ(quality.leaf_fill, (kWidth + 4.0) / (3 * kWidth));
 }
 
 TEST(TreeQuality, OfNothingIsNothing) {

@@ -7,7 +7,11 @@
 
 namespace raypool::test {
 
+#if __LDBL_MANT_DIG__ == 113  // on ARM
+using Float128 = long double;
+#else
 __extension__ using Float128 = __float128;
+#endif
 
 inline Float128 square_root(Float128 x) {
     if (x <= 0) return 0;

@@ -10,6 +10,7 @@
 namespace raypool {
 
 inline constexpr int kOperations = 20;
+inline constexpr int kRoundedOperations = 8;  ///< the first of them
 inline constexpr const char* kOperationNames[kOperations] = {"a + b",
                                                              "a - b",
                                                              "a * b",
@@ -43,7 +44,7 @@ RAYPOOL_INLINE std::uint32_t result_bits(float value) {
 }
 
 /// Whether one is the least normal number and the other the zero of its sign: of what is less by up to half a step of
-/// denormal numbers, processors make one or the other (docs/architecture.md, "One image").
+/// denormal numbers, 2^-150, processors make one or the other (docs/architecture.md, "One image"; docs/gpu.md).
 RAYPOOL_INLINE bool is_rounding_to_normal(std::uint32_t a, std::uint32_t b) {
     constexpr std::uint32_t kLeastNormal = 0x00800000U;
     return (a ^ b) == kLeastNormal && ((a | b) & 0x7fffffffU) == kLeastNormal;

@@ -222,12 +222,14 @@ TEST(RealOperations, AreThoseOfEveryProcessor) {
         pair_of(i, a, b);
         std::uint32_t out[kOperations];
         operate(a, b, out);
-        for (const std::uint32_t word : out) {
-            const std::uint32_t zero = word & 0x80000000U;
-            hash = (hash ^ (is_rounding_to_normal(word, zero) ? zero : word)) * 0x100000001b3U;
+        for (int k = 0; k < kOperations; ++k) {
+            const std::uint32_t zero = out[k] & 0x80000000U;
+            const bool is_exact = k == 2 && std::abs(double{a} * double{b}) >= 0x1p-126;
+            if (k < kRoundedOperations && !is_exact && is_rounding_to_normal(out[k], zero)) out[k] = zero;
+            hash = (hash ^ out[k]) * 0x100000001b3U;
         }
     }
-    EXPECT_EQ(fmt::format("{:016x}", hash), "2503d4a5ad96bcdb");
+    EXPECT_EQ(fmt::format("{:016x}", hash), "c621c5ce8d96bcdb");
 }
 
 }  // namespace
