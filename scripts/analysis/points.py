@@ -137,7 +137,8 @@ def shapes(figure):
         if point.box:
             x0, y0, x1, y1 = (number * scale for number in point.box)
             if x1 - x0 > 0.1 and y1 - y0 > 0.1:
-                found.append(f'<rect {attributes} x="{x0:.1f}" y="{height - y1:.1f}" width="{x1 - x0:.1f}" height="{y1 - y0:.1f}"/>')
+                found.append(f'<rect {attributes} x="{x0:.1f}" y="{height - y1:.1f}" width="{x1 - x0:.1f}" '
+                             f'height="{y1 - y0:.1f}"/>')
             continue
         x, y = axis.transData.transform((point.x, point.y))
         inside = axis.bbox.padded(2)

@@ -43,7 +43,8 @@ def rows(factor=1.0, count=150):
 def run(commit="aaaa", finished="2026-01-01T00:00:00Z"):
     said = Summary([Finding("a pool is faster", "2 (1 to 3)", Verdict.HOLDS), Finding(HOSTILE, "no", Verdict.DOES_NOT_HOLD)],
                    [Picture("speed", "How fast", "What to see.")],
-                   [Table("Sizes", ["way", "size"], [["b", "10.5 (10 to 11)"], ["a", "9 KiB"], ["c", ""], [HOSTILE, "9.25 (9 to 10)"]])],
+                   [Table("Sizes", ["way", "size"],
+                          [["b", "10.5 (10 to 11)"], ["a", "9 KiB"], ["c", ""], [HOSTILE, "9.25 (9 to 10)"]])],
                    [HOSTILE])
     return {
         "study": "fake", "question": "Does it work?", "started": [finished], "finished": finished, "stolen": 0.0123,

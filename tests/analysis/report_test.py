@@ -100,7 +100,8 @@ class PageTest(unittest.TestCase):
         self.assertEqual(len(self.outline.all("input", type="search")), 3)  # findings, one table, rows
 
     def test_says_where_the_figures_come_from(self):
-        for part in ("aaaa", "gcc 12", "-O3", "OMP_WAIT_POLICY", "a processor", "1.2 % of the processor time", "raypool study fake"):
+        for part in ("aaaa", "gcc 12", "-O3", "OMP_WAIT_POLICY", "a processor",
+                     "1.2 % of the processor time", "raypool study fake"):
             self.assertIn(part, self.text)
 
     def test_rows_beyond_the_limit_are_left_out_and_counted(self):
@@ -122,7 +123,8 @@ class PageTest(unittest.TestCase):
 
 class CellTest(unittest.TestCase):
     def test_is_sorted_by_the_number_it_begins_with(self):
-        for text, number in (("0.123 (0.100 to 0.140)", 0.123), ("12 %", 12), ("1e-05", 1e-5), ("-3.5", -3.5), ("< 6.5e-05", 6.5e-5),
+        for text, number in (("0.123 (0.100 to 0.140)", 0.123), ("12 %", 12), ("1e-05", 1e-5), ("-3.5", -3.5),
+                             ("< 6.5e-05", 6.5e-5),
                              ("1.5 MiB", 1.5 * 2**20), ("338 KiB", 338 * 2**10), ("100 spheres", 100), ("1000 meshes", 1000),
                              ("never", None), ("", None), ("2026-11-30T01:58:09Z", 2026), ("lines, static", None)):
             self.assertEqual(report.number_of(text), number, text)
@@ -168,6 +170,7 @@ class ChangeTest(unittest.TestCase):
         self.assertTrue(self.change(old, [5, 6, 7, 8, 9.9]).is_beyond_noise)
         self.assertFalse(self.change(old, [5, 6, 7, 8, 10]).is_beyond_noise)  # they touch
         self.assertFalse(self.change(old, [15, 16, 17, 18, 13.5]).is_beyond_noise)
+        self.assertFalse(self.change(old, [15, 16, 17, 18, 14]).is_beyond_noise)
         self.assertTrue(self.change(old, [15, 16, 17, 18, 14.5]).is_beyond_noise)
 
     def test_of_too_few_runs_cannot_be_told(self):
