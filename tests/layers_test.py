@@ -26,11 +26,13 @@ ALLOWED["bench/stability"] = {*CORE, *ENGINES, "bench/naive"}
 ALLOWED["bench/studies"] = {*CORE, *ENGINES, "cluster", *BENCH[:4]}
 ALLOWED["bench"] = {*CORE, *ENGINES}
 ALLOWED["cli"] = {*CORE, *ENGINES, "cluster", "bench/accuracy", "bench/peers", "bench/studies"}
+ALLOWED["python"] = {*CORE, *ENGINES, "cli"}
 
 # Libraries that only these folders may include, so that no other needs them.
 LIBRARIES = {"png.h": {"core/image"}, "Imf": {"core/image"}, "mpi.h": {"cluster"}, "embree3/": {"bench/peers"}, "cuda_runtime": {"gpu"},
              "immintrin.h": {"core/math"}, "xmmintrin.h": {"core/math"}, "arm_neon.h": {"core/math"},
-             "CLI/": {"cli"}, "xxhash.h": {"core/base", "core/scene", "core/film", "bench/accuracy"},
+             "CLI/": {"cli"}, "pybind11/": {"python"},
+             "xxhash.h": {"core/base", "core/scene", "core/film", "bench/accuracy"},
              "boost/": {"core/image", "bench/accuracy"}}
 
 
