@@ -67,6 +67,14 @@ PixelWindow parse_pixel(std::string_view text, const char* option, std::int64_t 
     return {x, x + 1, y, y + 1};
 }
 
+std::vector<std::uint32_t> pixels_of(const PixelWindow& window, std::int64_t width) {
+    std::vector<std::uint32_t> pixels;
+    for (std::int64_t y = window.y_begin; y < window.y_end; ++y)
+        for (std::int64_t x = window.x_begin; x < window.x_end; ++x)
+            pixels.push_back(static_cast<std::uint32_t>(y * width + x));
+    return pixels;
+}
+
 std::uint64_t parse_seed(std::string_view text) {
     std::uint64_t seed = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);

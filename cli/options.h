@@ -30,6 +30,9 @@ SampleRange parse_samples(std::string_view text, std::int64_t spp);
 PixelWindow parse_window(std::string_view text, const char* option, std::int64_t width, std::int64_t height);
 PixelWindow parse_pixel(std::string_view text, const char* option, std::int64_t width, std::int64_t height);
 
+/// Of an image that is so wide, as RenderSettings::pixels has them: in rising order.
+std::vector<std::uint32_t> pixels_of(const PixelWindow& window, std::int64_t width);
+
 /// A whole number below 2^64.
 std::uint64_t parse_seed(std::string_view text);
 

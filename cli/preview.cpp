@@ -40,7 +40,8 @@ void Preview::show(const Checkpoint& sums) {
     const Image image = sums.sample_counts.empty() ? sums.framebuffer.cut(part_).image(sums.sample_count())
                                                    : sums.framebuffer.image(sums.sample_counts);
     if (!file_.empty()) {
-        const ImageAttributes attributes{{"raypool.samples_done", fmt::to_string(sums.sample_count())}};
+        ImageAttributes attributes;
+        if (sums.sample_counts.empty()) attributes["raypool.samples_done"] = fmt::to_string(sums.sample_count());
         attempt(
             "--preview", [&] { write_image(file_, image, attributes); }, [&] { file_.clear(); });
     }

@@ -54,15 +54,6 @@ PixelWindow crop_of(const RenderOptions& options, const Scene& scene) {
     return {0, scene.width, 0, scene.height};
 }
 
-/// In rising order.
-std::vector<std::uint32_t> pixels_of(const PixelWindow& window, std::int64_t width) {
-    std::vector<std::uint32_t> pixels;
-    for (std::int64_t y = window.y_begin; y < window.y_end; ++y)
-        for (std::int64_t x = window.x_begin; x < window.x_end; ++x)
-            pixels.push_back(static_cast<std::uint32_t>(y * width + x));
-    return pixels;
-}
-
 /// Of the code that a scene runs on, which may be compiled for more than it needs.
 std::size_t stored_record_bytes(const Scene& scene, const ImageSettings& settings, Precision precision) {
     const bool is_double = precision == Precision::Double;

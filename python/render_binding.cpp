@@ -87,15 +87,6 @@ std::shared_ptr<const Scene> sized(const std::shared_ptr<const Scene>& given, co
     return scene;
 }
 
-/// Those of the window, in rising order.
-std::vector<std::uint32_t> pixels_of(const PixelWindow& window, std::int64_t width) {
-    std::vector<std::uint32_t> pixels;
-    for (std::int64_t y = window.y_begin; y < window.y_end; ++y)
-        for (std::int64_t x = window.x_begin; x < window.x_end; ++x)
-            pixels.push_back(static_cast<std::uint32_t>(y * width + x));
-    return pixels;
-}
-
 void check_memory(const Scene& scene, bool is_adaptive) {
     std::size_t pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
     if (is_adaptive) pixel_bytes += 3 * sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
@@ -211,7 +202,7 @@ py::tuple render(const LoadedScene& loaded, std::vector<std::string> arguments, 
         record.read_s = loaded.read_s;
         std::vector<std::uint32_t> pixels;
         if (options.crop) {
-            pixels = pixels_of(record.crop, scene->width);
+            pixels = cli::pixels_of(record.crop, scene->width);
             record.settings.pixels = &pixels;
         }
         image = record.precision == cli::Precision::Double ? render_in<double>(*scene, record, watch, in_pieces)
