@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <iterator>
 #include <new>
 #include <string>
 #include <string_view>
@@ -14,11 +15,13 @@
 #include "cli/commands.h"
 #include "cli/option_rules.h"
 #include "cli/print.h"
+#include "cli/processor_check.h"
 #include "cluster/agreement.h"
 #include "cluster/ranks.h"
 #include "core/base/error.h"
 #include "core/base/memory.h"
 #include "core/base/text.h"
+#include "core/math/processor.h"
 
 namespace {
 
@@ -78,6 +81,12 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
 }
 
 }  // namespace
+
+#ifdef RAYPOOL_CHECKS_PROCESSOR
+/// Constants, since they are read before anything is made.
+constinit const raypool::cli::NeededInstructionSets raypool::cli::needed_instruction_sets{
+    std::begin(raypool::kInstructionSets), std::end(raypool::kInstructionSets)};
+#endif
 
 int main(int argc, char** argv) {
     // Writing past a limit or into a closed pipe shall be an error that can be reported, not a signal that kills.

@@ -60,6 +60,7 @@ constexpr OptionRule kRules[] = {
     {"render", "--pixel", Rule::Excludes, "--split-depth", "", "the paths that are printed follow one branch"},
     {"render", "--pixel", Rule::Excludes, "--precision", "double", "the paths that are printed are in float"},
     {"render", "--pixel", Rule::Excludes, "--quiet", "", "which prints nothing"},
+    {"render", "--aovs", Rule::Excludes, "--checkpoint", "", "whose sums do not tell variance"},
     {"render", "--every", Rule::Needs, "--checkpoint", "", ""},
     {"render", "--resume", Rule::Needs, "--checkpoint", "", "that is the file to go on from"},
     {"render", "--cost", Rule::Needs, "--cost-image", "", ""},

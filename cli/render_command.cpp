@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -16,6 +18,7 @@
 #include "cli/print.h"
 #include "cli/render_image.h"
 #include "cli/render_options.h"
+#include "cli/render_record.h"
 #include "cli/render_summary.h"
 #include "cli/stats_json.h"
 #include "cli/stopwatch.h"
@@ -34,35 +37,6 @@ namespace raypool::cli {
 
 namespace {
 
-/// Sums, the image made of them and, where asked for, costs with their image, a second half of the sums with estimates
-/// and the checkpoint's bytes must fit into the memory that is available, before anything is touched. Each rank on this
-/// machine has its own.
-void check_memory(const Scene& scene, const RenderOptions& options, const cluster::Ranks& ranks) {
-    std::size_t pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
-    if (!options.cost_image.empty()) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(float);
-    if (options.target_error > 0)
-        pixel_bytes += 3 * sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
-    if (!options.checkpoint.file.empty()) pixel_bytes += 6 * sizeof(std::int64_t) + sizeof(std::int32_t);
-    check_available(static_cast<std::size_t>(scene.width * scene.height) * pixel_bytes *
-                        static_cast<std::size_t>(ranks.on_this_machine()),
-                    fmt::format("--width: the sums and images of {} x {} pixels", scene.width, scene.height));
-}
-
-PixelWindow crop_of(const RenderOptions& options, const Scene& scene) {
-    if (options.crop) return parse_window(*options.crop, "--crop", scene.width, scene.height);
-    if (options.pixel) return parse_pixel(*options.pixel, "--pixel", scene.width, scene.height);
-    return {0, scene.width, 0, scene.height};
-}
-
-/// Of the code that a scene runs on, which may be compiled for more than it needs.
-std::size_t stored_record_bytes(const Scene& scene, const ImageSettings& settings, Precision precision) {
-    const bool is_double = precision == Precision::Double;
-    const std::size_t first = is_double ? kFirstCompiledFeatures<double> : kFirstCompiledFeatures<float>;
-    const Features& features =
-        kCompiledFeatures[compiled_features_index(needed_features(scene_features(scene), settings), first)];
-    return ray_record_bytes(features, is_double ? sizeof(double) : sizeof(float));
-}
-
 ImageAttributes image_attributes(const RenderRecord& record) {
     ImageAttributes attributes{{"raypool.hash", record.hash},
                                {"raypool.samples_done", fmt::to_string(record.samples_done)}};
@@ -79,6 +53,14 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
     write_image(options.cost_image, cost.image(), attributes);
 }
 
+void warn_of_infinite_halves(const std::string& file, const Image& image) {
+    const auto count = std::count_if(image.rgb.begin(), image.rgb.end(),
+                                     [](float value) { return std::isfinite(value) && value > kGreatestHalf; });
+    if (count > 0)
+        print(stderr, "raypool: {}: {} values are above {}, the most that half precision holds, and infinite there\n",
+              file, count, kGreatestHalf);
+}
+
 /// What only one rank can do is for rank 0; what is not gathered from ranks is refused. Returns the checkpoint's lock.
 [[nodiscard]] std::unique_ptr<FileLock> make_ready(RenderOptions& options, const cluster::Ranks& ranks) {
     if (ranks.separate_count() > 1 && !options.samples)
@@ -90,6 +72,7 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
     if (ranks.count() > 1)
         for (const auto& [flag, is_given] : {std::pair{"--trace", !options.trace.empty()},
                                              {"--cost-image", !options.cost_image.empty()},
+                                             {"--aovs", options.has_aovs},
                                              {"--crop", options.crop.has_value()},
                                              {"--pixel", options.pixel.has_value()}})
             if (is_given) throw InputError(fmt::format("{}: is not made by several ranks", flag));
@@ -139,20 +122,16 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
                     {"--cost-image", options.cost_image}},
                    {{"the scene", options.scene}});
     const std::unique_ptr<FileLock> lock = make_ready(options, ranks);
-    RenderRecord record;
-    record.settings = render_settings(options);
-    record.spp = options.spp;
-    record.precision = options.precision == "double" ? Precision::Double : Precision::Float;
-    record.engine = options.engine;
-    record.target_error = options.target_error;
-    if (options.target_error > 0 && options.spp < 2)
-        throw InputError("--spp: must be at least 2 with --target-error: one sample does not tell its error");
+    RenderRecord record = start_record(options);
     std::optional<ImageTarget> target;
     if (!options.output.empty()) {
         target = parse_image_target(options.output);
         if (target->is_stdout) options.is_quiet = true;
         check_writable(target->file);
     }
+    for (const auto& [flag, is_given] : {std::pair{"--aovs", options.has_aovs}, {"--half", options.is_half}})
+        if (is_given && (!target || target->format != ImageFormat::Exr))
+            throw InputError(fmt::format("{}: only an .exr file has room for that: name one by --output", flag));
     if (!options.stats.empty()) check_writable(options.stats);
     if (!options.cost_image.empty()) {
         if (image_format(options.cost_image) == ImageFormat::Png)
@@ -168,19 +147,12 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
 
     Stopwatch watch;
     Scene scene = scene_of(options);
-    check_memory(scene, options, ranks);
+    add_scene(record, scene, options, ranks.on_this_machine());
     CostImage cost(cost_of(options.cost), options.cost_image.empty() ? 0 : scene.width, scene.height);
     if (!options.cost_image.empty()) record.settings.cost_image = &cost;
-    const std::size_t record_bytes = stored_record_bytes(scene, record.settings, record.precision);
-    record.pool = pool_settings(options.pool, record_bytes, record.settings.threads);
-    record.gpu = gpu_settings(options, gpu::pool_record_bytes(needed_features(scene_features(scene), record.settings)));
     if (!options.checkpoint.file.empty() && engines().find(record.engine).has_pool &&
         adds_reals(record.pool.accumulator))
         throw InputError("--accumulator: atomic-float and atomic-double have no exact sums to keep in a --checkpoint");
-    record.scene_name = scene.name;
-    record.width = scene.width;
-    record.height = scene.height;
-    record.crop = crop_of(options, scene);
     std::vector<std::uint32_t> pixels;
     if (options.crop || options.pixel) {
         pixels = pixels_of(record.crop, scene.width);
@@ -194,7 +166,8 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
     if (!options.preview.file.empty() || !options.preview.server.empty())
         preview.emplace(options.preview, record.scene_name, record.crop);
     CheckpointKeeper checkpoint(options.checkpoint, preview ? &*preview : nullptr, ranks);
-    const Image image = render_image(scene, options, checkpoint, ranks, record);
+    const RenderedImage rendered = render_image(scene, options, checkpoint, ranks, record);
+    const Image& image = rendered.image;
     watch.lap();
     std::exception_ptr failure = checkpoint.failure();  // what cannot be written costs nothing else
     const auto attempt = [&failure](const std::string& file, const auto& write) {
@@ -204,8 +177,10 @@ int render(RenderOptions& options, cluster::Ranks& ranks) {
             if (!failure) failure = std::current_exception();
         }
     };
-    attempt(options.output,
-            [&](const auto&) { write_image(target->file, target->format, image, image_attributes(record)); });
+    attempt(options.output, [&](const auto&) {
+        write_image(target->file, target->format, image, image_attributes(record), {rendered.aovs, options.is_half});
+        if (options.is_half) warn_of_infinite_halves(options.output, image);
+    });
     record.write_s = watch.seconds();
     record.total_s = total.seconds();
     attempt(options.stats, [&](const auto& file) { write_json(file, stats_json(record)); });

@@ -12,10 +12,8 @@
 #include "cli/path_printer.h"
 #include "cli/progress_bar.h"
 #include "cli/status_file.h"
-#include "cli/stopwatch.h"
 #include "cluster/exchange.h"
 #include "cluster/rank_engine.h"
-#include "core/film/light_range.h"
 #include "core/runtime/progressive.h"
 #include "core/scene/scene_hash.h"
 
@@ -73,23 +71,11 @@ RenderReport render_missing(const Engine& engine, const CompiledScene<Scalar>& s
 }
 
 template <class Scalar>
-Image render_in(const Scene& scene, const RenderOptions& options, CheckpointKeeper& checkpoint, cluster::Ranks& ranks,
-                RenderRecord& record) {
-    Stopwatch watch;
-    const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
-    record.features = compiled.features;
-    record.settings.light_sampling = needed_light_sampling(compiled.features, record.settings);
-    record.truncation_bound = compiled.truncation_bound(record.settings.depth);
-    record.compile_s = watch.lap();
-
+RenderedImage render_in(const Scene& scene, const RenderOptions& options, CheckpointKeeper& checkpoint,
+                        cluster::Ranks& ranks, RenderRecord& record) {
+    const CompiledScene<Scalar> compiled = compile_for<Scalar>(record, scene);
     const bool is_adaptive = record.target_error > 0;
-    Checkpoint sums{image_key(scene, record),
-                    record.spp,
-                    {},
-                    {},
-                    0,
-                    Framebuffer(compiled.width, compiled.height, fixed_point(compiled, record.settings, record.spp),
-                                is_adaptive ? Halves::Apart : Halves::Together)};
+    Checkpoint sums{image_key(scene, record), record.spp, {}, {}, 0, make_sums(record, compiled)};
     if (options.checkpoint.is_resumed) {
         if (ranks.is_first())
             sums =
@@ -116,17 +102,10 @@ Image render_in(const Scene& scene, const RenderOptions& options, CheckpointKeep
     }
     checkpoint.finish(sums);
     record.settings.progress = nullptr;
-    record.sum_step = 1 / sums.framebuffer.fixed_point().scale();
-    record.dimmest_light = dimmest_light(scene);
     record.samples_done = is_adaptive ? std::llround(record.adaptive.mean_samples()) : sums.sample_count();
     if constexpr (std::same_as<Scalar, float>)
         if (options.pixel) print_paths(scene, compiled, record, sums.framebuffer);
-    const Framebuffer shown = is_cropped(record) ? sums.framebuffer.cut(record.crop) : std::move(sums.framebuffer);
-    record.hash = shown.hash();
-    Image image = is_adaptive ? shown.image(record.adaptive.sample_counts) : shown.image(record.samples_done);
-    record.mean_radiance =
-        std::accumulate(image.rgb.begin(), image.rgb.end(), 0.0) / static_cast<double>(image.rgb.size());
-    return image;
+    return finish_record(record, scene, compiled, std::move(sums.framebuffer));
 }
 
 }  // namespace
@@ -150,8 +129,8 @@ ImageKey image_key(const Scene& scene, const RenderRecord& record) {
             {"target_error", fmt::to_string(record.target_error)}};
 }
 
-Image render_image(const Scene& scene, const RenderOptions& options, CheckpointKeeper& checkpoint,
-                   cluster::Ranks& ranks, RenderRecord& record) {
+RenderedImage render_image(const Scene& scene, const RenderOptions& options, CheckpointKeeper& checkpoint,
+                           cluster::Ranks& ranks, RenderRecord& record) {
     return record.precision == Precision::Double ? render_in<double>(scene, options, checkpoint, ranks, record)
                                                  : render_in<float>(scene, options, checkpoint, ranks, record);
 }

@@ -3,9 +3,9 @@
 
 #include "cli/checkpoint_keeper.h"
 #include "cli/render_options.h"
-#include "cli/stats_json.h"
+#include "cli/render_record.h"
 #include "cluster/ranks.h"
-#include "core/image/image.h"
+#include "core/image/image_file.h"
 #include "core/scene/scene.h"
 
 namespace raypool::cli {
@@ -17,7 +17,7 @@ ImageKey image_key(const Scene& scene, const RenderRecord& record);
 /// Renders what the checkpoint, if one is resumed, lacks. Reads the settings in `record`, and fills in
 /// what was made. Where the checkpoint was asked to stop, the image is of the samples so far. Of several ranks, all
 /// call it, and rank 0 gets the image; what others get means nothing.
-Image render_image(const Scene& scene, const RenderOptions& options, CheckpointKeeper& checkpoint,
-                   cluster::Ranks& ranks, RenderRecord& record);
+RenderedImage render_image(const Scene& scene, const RenderOptions& options, CheckpointKeeper& checkpoint,
+                           cluster::Ranks& ranks, RenderRecord& record);
 
 }  // namespace raypool::cli

@@ -16,6 +16,9 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     add_common_options(command, options);
     command.add_option("-o,--output", options.output, "Image file: .png (sRGB), .exr or .pfm (linear)")
         ->check(check_file_name);
+    command.add_flag("--aovs", options.has_aovs,
+                     "Also alpha, depth, normal, albedo, samples and variance, as channels of the .exr file");
+    command.add_flag("--half", options.is_half, "Half-precision floats in the .exr file");
     command
         .add_option("--engine", options.engine,
                     fmt::format("How paths are followed (default: {}, with --cost-image {})",

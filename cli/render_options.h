@@ -32,6 +32,8 @@ struct RenderOptions : CommonOptions {
     std::optional<std::string> pixel;
     double target_error = 0;
     std::string precision = "float";
+    bool has_aovs = false;
+    bool is_half = false;
     bool count_work = false;
     bool is_quiet = false;
     CheckpointOptions checkpoint;

@@ -108,6 +108,7 @@ json stats_json(const RenderRecord& record) {
           {"compile", record.compile_s},
           {"render", report.seconds},
           {"setup", report.setup_s},  // of render
+          {"aovs", record.aovs_s},
           {"write", record.write_s},
           {"total", record.total_s}}},
         {"paths", report.paths()},

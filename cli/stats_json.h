@@ -29,6 +29,7 @@ struct RenderRecord {
     gpu::GpuSettings gpu;             ///< of the GPU engine
     RenderReport report;              ///< of all ranks
     std::vector<RenderReport> ranks;  ///< of each, where there are several
+    bool has_aovs = false;
     double target_error = 0;          ///< 0: every pixel has the same number of samples
     AdaptiveReport adaptive;
     double sum_step = 0;          ///< of the framebuffer's sums, in radiance
@@ -39,6 +40,7 @@ struct RenderRecord {
     std::int64_t samples_done = 0;  ///< for each pixel, those of a resumed checkpoint too; on average where adaptive
     double read_s = 0;              ///< scene file to description
     double compile_s = 0;           ///< description to tables
+    double aovs_s = 0;              ///< first hits, and what halves tell
     double write_s = 0;             ///< sums to image file
     double total_s = 0;
 };

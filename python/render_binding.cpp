@@ -19,14 +19,12 @@
 #include "cli/option_rules.h"
 #include "cli/options.h"
 #include "cli/render_options.h"
+#include "cli/render_record.h"
 #include "cli/stats_json.h"
 #include "cli/stopwatch.h"
 #include "core/base/error.h"
 #include "core/base/json_file.h"
-#include "core/base/memory.h"
-#include "core/film/light_range.h"
 #include "core/runtime/progressive.h"
-#include "gpu/engine.h"
 #include "python/scene_binding.h"
 
 namespace raypool::python {
@@ -87,39 +85,6 @@ std::shared_ptr<const Scene> sized(const std::shared_ptr<const Scene>& given, co
     return scene;
 }
 
-void check_memory(const Scene& scene, bool is_adaptive) {
-    std::size_t pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
-    if (is_adaptive) pixel_bytes += 3 * sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
-    check_available(static_cast<std::size_t>(scene.width * scene.height) * pixel_bytes,
-                    fmt::format("--width: the sums and images of {} x {} pixels", scene.width, scene.height));
-}
-
-/// All that is known of a render before its scene is compiled.
-cli::RenderRecord make_record(const Scene& scene, const cli::RenderOptions& options) {
-    cli::RenderRecord record;
-    record.settings = cli::render_settings(options);
-    record.spp = options.spp;
-    record.precision = options.precision == "double" ? cli::Precision::Double : cli::Precision::Float;
-    record.engine = options.engine;
-    record.target_error = options.target_error;
-    if (options.target_error > 0 && options.spp < 2)
-        throw InputError("--spp: must be at least 2 with --target-error: one sample does not tell its error");
-    check_memory(scene, options.target_error > 0);
-    const bool is_double = record.precision == cli::Precision::Double;
-    const Features needed = needed_features(scene_features(scene), record.settings);
-    const std::size_t first = is_double ? kFirstCompiledFeatures<double> : kFirstCompiledFeatures<float>;
-    const std::size_t record_bytes = ray_record_bytes(kCompiledFeatures[compiled_features_index(needed, first)],
-                                                      is_double ? sizeof(double) : sizeof(float));
-    record.pool = cli::pool_settings(options.pool, record_bytes, record.settings.threads);
-    record.gpu = cli::gpu_settings(options, gpu::pool_record_bytes(needed));
-    record.scene_name = scene.name;
-    record.width = scene.width;
-    record.height = scene.height;
-    record.crop = options.crop ? cli::parse_window(*options.crop, "--crop", scene.width, scene.height)
-                               : PixelWindow{0, scene.width, 0, scene.height};
-    return record;
-}
-
 /// Renders into the framebuffer; in pieces, or asking `watch` at the end alone.
 template <class Scalar>
 RenderReport render_into(Framebuffer& framebuffer, const CompiledScene<Scalar>& compiled, cli::RenderRecord& record,
@@ -155,62 +120,53 @@ RenderReport render_into(Framebuffer& framebuffer, const CompiledScene<Scalar>& 
 }
 
 template <class Scalar>
-Image render_in(const Scene& scene, cli::RenderRecord& record, const Watch& watch, bool in_pieces) {
-    cli::Stopwatch stopwatch;
-    const CompiledScene<Scalar> compiled = compile<Scalar>(scene);
-    record.features = compiled.features;
-    record.settings.light_sampling = needed_light_sampling(compiled.features, record.settings);
-    record.truncation_bound = compiled.truncation_bound(record.settings.depth);
-    record.compile_s = stopwatch.lap();
+cli::RenderedImage render_in(const Scene& scene, cli::RenderRecord& record, const Watch& watch, bool in_pieces) {
+    const CompiledScene<Scalar> compiled = cli::compile_for<Scalar>(record, scene);
     watch.look(0, path_count(compiled, record.settings));
-
-    const bool is_adaptive = record.target_error > 0;
-    Framebuffer framebuffer(compiled.width, compiled.height, fixed_point(compiled, record.settings, record.spp),
-                            is_adaptive ? Halves::Apart : Halves::Together);
-    record.report = render_into(framebuffer, compiled, record, watch, in_pieces);
-    record.sum_step = 1 / framebuffer.fixed_point().scale();
-    record.dimmest_light = dimmest_light(scene);
-    const Framebuffer shown = cli::is_cropped(record) ? framebuffer.cut(record.crop) : std::move(framebuffer);
-    record.hash = shown.hash();
-    Image image = is_adaptive ? shown.image(record.adaptive.sample_counts) : shown.image(record.samples_done);
-    record.mean_radiance =
-        std::accumulate(image.rgb.begin(), image.rgb.end(), 0.0) / static_cast<double>(image.rgb.size());
-    return image;
+    Framebuffer sums = cli::make_sums(record, compiled);
+    record.report = render_into(sums, compiled, record, watch, in_pieces);
+    return cli::finish_record(record, scene, compiled, std::move(sums));
 }
 
-/// The pixels, which are not copied.
-py::array_t<float> to_array(Image image) {
-    auto owned = std::make_unique<Image>(std::move(image));
-    const Image& pixels = *owned;
-    const py::capsule owner(owned.get(), [](void* object) { delete static_cast<Image*>(object); });
+/// An array of numpy that has the values of a vector, which are not copied.
+py::array_t<float> to_array(std::vector<float> values, const std::vector<std::int64_t>& shape) {
+    auto owned = std::make_unique<std::vector<float>>(std::move(values));
+    const float* const data = owned->data();
+    const py::capsule owner(owned.get(), [](void* object) { delete static_cast<std::vector<float>*>(object); });
     owned.release();
-    return py::array_t<float>({pixels.height, pixels.width, std::int64_t{3}}, pixels.rgb.data(), owner);
+    return py::array_t<float>(shape, data, owner);
 }
 
 py::tuple render(const LoadedScene& loaded, std::vector<std::string> arguments, const py::object& progress,
                  bool in_pieces) {
     const ThreadCount keep;
     const Watch watch(progress);
-    Image image;
+    cli::RenderedImage made;
     std::string stats;
     {
         const py::gil_scoped_release no_gil;
         const cli::Stopwatch total;
         const cli::RenderOptions options = parse(std::move(arguments));
+        cli::RenderRecord record = cli::start_record(options);
         const std::shared_ptr<const Scene> scene = sized(loaded.scene, options);
-        cli::RenderRecord record = make_record(*scene, options);
+        cli::add_scene(record, *scene, options);
         record.read_s = loaded.read_s;
         std::vector<std::uint32_t> pixels;
         if (options.crop) {
             pixels = cli::pixels_of(record.crop, scene->width);
             record.settings.pixels = &pixels;
         }
-        image = record.precision == cli::Precision::Double ? render_in<double>(*scene, record, watch, in_pieces)
-                                                           : render_in<float>(*scene, record, watch, in_pieces);
+        made = record.precision == cli::Precision::Double ? render_in<double>(*scene, record, watch, in_pieces)
+                                                          : render_in<float>(*scene, record, watch, in_pieces);
         record.total_s = loaded.read_s + total.seconds();
         stats = json_text(cli::stats_json(record), JsonLayout::OneLine);
     }
-    return py::make_tuple(to_array(std::move(image)), stats);
+    const std::int64_t height = made.image.height;
+    const std::int64_t width = made.image.width;
+    py::dict channels;
+    for (ImageChannel& channel : made.aovs)
+        channels[py::str(channel.name)] = to_array(std::move(channel.values), {height, width});
+    return py::make_tuple(to_array(std::move(made.image.rgb), {height, width, 3}), stats, channels);
 }
 
 py::dict engine_descriptions() {

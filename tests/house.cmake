@@ -7,6 +7,11 @@ add_test(NAME documentation
 set_tests_properties(documentation PROPERTIES LABELS slow COST 100  # begun first, not to end last
                                               ENVIRONMENT OMP_WAIT_POLICY=passive)
 
+if(NOT RAYPOOL_SANITIZE)  # pictures of 64 samples a pixel
+  add_test(NAME gallery COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/draw_gallery $<TARGET_FILE:raypool> --check)
+  set_tests_properties(gallery PROPERTIES LABELS slow)
+endif()
+
 add_test(NAME layers COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/layers_test.py ${PROJECT_SOURCE_DIR})
 set_tests_properties(layers PROPERTIES LABELS unit)
 

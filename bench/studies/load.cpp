@@ -7,6 +7,7 @@
 #include "bench/studies/renders.h"
 #include "bench/studies/replay_ways.h"
 #include "bench/studies/runner.h"
+#include "core/runtime/balanced_items.h"
 #include "core/runtime/settings_text.h"
 #include "wavefront/ladder.h"
 
@@ -24,6 +25,7 @@ constexpr LoopWay kLoadWays[] = {
     {"pixels, static", "pixel", "static"},
     {"pixels, static,1 (collapse)", "pixel", "static,1"},
     {"pixels, dynamic", "pixel", "dynamic"},
+    {"balanced (raypool's default)", "pixel", "balanced"},
 };
 constexpr const char* kShares = "one of all paths, equal shares";
 
@@ -60,6 +62,16 @@ std::vector<Cells> count_rows(const std::string& group, const std::string& way, 
     return rows;
 }
 
+/// Of the items of a loop by so many threads.
+std::vector<Tally> item_tallies(const PathCosts& costs, const ReplayWay& loop, int threads) {
+    if (loop.schedule.kind != ReplaySchedule::Kind::Balanced) return costs.items(loop.grain);
+    const BalancedItems items(costs.width * costs.height, costs.samples, threads);
+    std::vector<Tally> tallies;
+    for (std::int64_t i = 0; i < items.count(); ++i)
+        tallies.push_back(costs.tally(items.range(i).begin, items.range(i).end));
+    return tallies;
+}
+
 /// Loops over items that real threads would take as they please, and the pool of the paper's description: all paths of
 /// the image, each round in equal shares.
 std::vector<Cells> replay_load(const StudyScene& scene, const RenderSettings& settings,
@@ -77,7 +89,7 @@ std::vector<Cells> replay_load(const StudyScene& scene, const RenderSettings& se
         const ReplayWay loop = loop_way(way);
         const Replayed result = prepare(loop, costs, kTests).replay(threads, {}, {});
         std::vector<Tally> work(static_cast<std::size_t>(threads));
-        const std::vector<Tally> items = costs.items(loop.grain);
+        const std::vector<Tally> items = item_tallies(costs, loop, threads);
         for (std::size_t i = 0; i < items.size(); ++i) work[static_cast<std::size_t>(result.owner[i])].add(items[i]);
         for (std::size_t i = 0; i < work.size(); ++i)
             rows.push_back(row("recursion", way.name, i, work[i]) +

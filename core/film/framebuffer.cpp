@@ -22,7 +22,8 @@ constexpr double kLeastMaxRadiance = 0x1p-20;  ///< a black scene still has a st
 std::size_t cells_of(std::int64_t pixels, Halves halves) {
     if (halves == Halves::Together) return static_cast<std::size_t>(pixels);
     if (pixels > std::int64_t{1} << 31U)
-        throw InputError(fmt::format("--target-error: takes an image of at most 2^31 pixels, not {}", pixels));
+        throw InputError(
+            fmt::format("--target-error and --aovs: take an image of at most 2^31 pixels, not {}", pixels));
     return 2 * static_cast<std::size_t>(pixels);
 }
 }  // namespace
@@ -47,6 +48,13 @@ std::string Framebuffer::hash() const {
     const std::array<std::int64_t, 3> shape{width_, height_, fixed_.fraction_bits};
     const XXH64_hash_t seed = XXH3_64bits(shape.data(), sizeof(shape));
     return fmt::format("{:016x}", XXH3_64bits_withSeed(sums_.data(), sums_.size() * sizeof(std::int64_t), seed));
+}
+
+Framebuffer Framebuffer::together() const {
+    Framebuffer joined(width_, height_, fixed_);
+    for (std::size_t pixel = 0; pixel < joined.cell_count(); ++pixel)
+        joined.add(static_cast<std::int64_t>(pixel), sum(pixel));
+    return joined;
 }
 
 Framebuffer Framebuffer::cut(const PixelWindow& window) const {

@@ -5,7 +5,7 @@
 /// The step is 2^-k with k chosen so that no render can overflow: spp samples of the scene's greatest radiance fit. It
 /// is the same for all renders of up to 16,384 samples a pixel.
 /// On request it keeps the sums of two halves of each pixel's samples apart. Their difference tells what error is left
-/// (adaptive.h), is exact and free of order too, and does not ask in how many parts a sample comes.
+/// (half_variance.h), is exact and free of order too, and does not ask in how many parts a sample comes.
 #pragma once
 
 #include <atomic>
@@ -69,6 +69,8 @@ class Framebuffer {
     /// The sum of all samples of a pixel.
     [[nodiscard]] FixedRgb sum(std::size_t pixel) const;
 
+    /// With one sum a pixel, as if halves had never been apart.
+    [[nodiscard]] Framebuffer together() const;
     /// A part of it, as a framebuffer of its own.
     [[nodiscard]] Framebuffer cut(const PixelWindow& window) const;
 

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <span>
 #include <string>
 #include <string_view>
@@ -173,16 +174,35 @@ PixelWindow pixel_window(const Window& window) {
 
 }  // namespace
 
-Bytes encode_exr(const Image& image, const ImageAttributes& attributes) {
+Bytes encode_exr(const Image& image, const ImageAttributes& attributes, const ExrExtras& extras) {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
-    for (const std::string& channel : kChannels) header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
     for (const auto& [name, value] : attributes) header.insert(name.c_str(), Imf::StringAttribute(value));
+
+    // Halves are made here of floats, since OpenEXR changes no types when it writes.
+    Imf::FrameBuffer buffer;
+    std::deque<std::vector<half>> halves;
+    const auto add = [&](const std::string& name, const float* first, std::size_t stride, bool is_half) {
+        header.channels().insert(name, Imf::Channel(is_half ? Imf::HALF : Imf::FLOAT));
+        const auto width = static_cast<std::size_t>(image.width);
+        if (!is_half) {
+            buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, first, header.dataWindow(), stride * sizeof(float),
+                                                 width * stride * sizeof(float)));
+            return;
+        }
+        std::vector<half>& values = halves.emplace_back(width * static_cast<std::size_t>(image.height));
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = half(first[i * stride]);
+        buffer.insert(
+            name, Imf::Slice::Make(Imf::HALF, values.data(), header.dataWindow(), sizeof(half), width * sizeof(half)));
+    };
+    for (std::size_t k = 0; k < kChannels.size(); ++k) add(kChannels[k], image.rgb.data() + k, 3, extras.is_half);
+    for (const ImageChannel& channel : extras.channels)
+        add(channel.name, channel.values.data(), 1, extras.is_half && channel.may_be_half);
 
     MemoryOutput stream;
     {
         Imf::OutputFile file(stream, header);  // complete only after its destructor
-        file.setFrameBuffer(frame_buffer(kChannels, const_cast<float*>(image.rgb.data()), header.dataWindow()));
+        file.setFrameBuffer(buffer);
         file.writePixels(static_cast<int>(image.height));
     }
     return std::move(stream.bytes);

@@ -26,7 +26,7 @@ using BytesView = std::span<const std::byte>;
 Bytes encode_png(const Image& image, const ImageAttributes& attributes);
 ImageContents decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels);
 
-Bytes encode_exr(const Image& image, const ImageAttributes& attributes);
+Bytes encode_exr(const Image& image, const ImageAttributes& attributes, const ExrExtras& extras);
 ImageContents decode_exr(BytesView bytes, const ImageLimits& limits = {});
 
 Bytes encode_pfm(const Image& image);

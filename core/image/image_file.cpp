@@ -69,9 +69,13 @@ void write_image(const fs::path& path, const Image& image, const ImageAttributes
     write_image(path, image_format(path), image, attributes);
 }
 
-void write_image(const fs::path& path, ImageFormat format, const Image& image, const ImageAttributes& attributes) {
+void write_image(const fs::path& path, ImageFormat format, const Image& image, const ImageAttributes& attributes,
+                 const ExrExtras& extras) {
     RAYPOOL_CHECK(image.width > 0 && image.height > 0 && std::ssize(image.rgb) == image.width * image.height * 3,
                   "an image has three values for each of its pixels");
+    RAYPOOL_CHECK(format == ImageFormat::Exr || extras.is_empty(), "only an EXR file has room for extras");
+    for (const ImageChannel& channel : extras.channels)
+        RAYPOOL_CHECK(std::ssize(channel.values) == image.width * image.height, "a channel has a value for each pixel");
     ImageAttributes texts;
     for (const auto& [name, text] : attributes) texts.emplace(name, valid_utf8(text));
     const Bytes bytes = naming(path, "write", [&] {
@@ -79,7 +83,7 @@ void write_image(const fs::path& path, ImageFormat format, const Image& image, c
             case ImageFormat::Png:
                 return encode_png(image, texts);
             case ImageFormat::Exr:
-                return encode_exr(image, texts);
+                return encode_exr(image, texts, extras);
             case ImageFormat::Pfm:
                 break;
         }

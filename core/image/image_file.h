@@ -1,7 +1,8 @@
 /// Image files: PNG, OpenEXR and PFM, written whole or not at all, read without trusting them.
 ///
 /// PNG: 8 bits a channel, coded with the curve of sRGB, clamped to [0, 1], NaN as black. Lossy.
-/// EXR: written as 32-bit floats, ZIP-compressed. Read by OpenEXR: scan lines or tiles, one part or several, half,
+/// EXR: written as 32-bit floats, or the picture in halves, with other channels beside it (ExrExtras), ZIP-compressed.
+/// Read by OpenEXR: scan lines or tiles, one part or several, half,
 /// float or integer values, any compression. Of several layers the first that has red, green and blue is taken, of
 /// files without one the first luminance. Not read: parts of deep data, channels of fewer values than pixels (but
 /// luminance with chroma, which OpenEXR turns into RGB at half precision), and rows so wide and of so many channels
@@ -47,9 +48,29 @@ using ImageAttributes = std::map<std::string, std::string>;
 /// By the extension, in either case; an InputError for any other than .png, .exr and .pfm.
 ImageFormat image_format(const std::filesystem::path& path);
 
+/// The greatest number that a half-precision float holds.
+inline constexpr float kGreatestHalf = 65504;
+
+/// A channel of an EXR file beside red, green and blue.
+struct ImageChannel {
+    std::string name;           ///< "A", or with its layer before it: "albedo.R"
+    std::vector<float> values;  ///< one a pixel, row 0 at the top
+    bool may_be_half = false;   ///< of a range that half precision keeps well
+};
+
+/// What only an EXR file has room for.
+struct ExrExtras {
+    std::vector<ImageChannel> channels;
+    /// Red, green and blue, and the channels that may be, in half precision: 11 bits, at most kGreatestHalf (what is
+    /// greater becomes infinite), at least 2^-24.
+    bool is_half = false;
+    [[nodiscard]] bool is_empty() const { return channels.empty() && !is_half; }
+};
+
+/// Extras are for EXR files only.
 void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes);
 void write_image(const std::filesystem::path& path, ImageFormat format, const Image& image,
-                 const ImageAttributes& attributes);
+                 const ImageAttributes& attributes, const ExrExtras& extras = {});
 
 /// What a file holds.
 struct ImageContents {

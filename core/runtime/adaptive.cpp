@@ -1,33 +1,25 @@
 #include "core/runtime/adaptive.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 
+#include "core/film/half_variance.h"
 #include "core/film/rare_events.h"
 
 namespace raypool {
 
 namespace {
 
-/// Variance of a sample, mean over channels, from the sums a and b of two halves of n samples: both estimate one mean.
-/// With n_a and n_b samples, n_b a - n_a b has the expectation 0 and the variance n n_a n_b times that of a sample. The
-/// difference is exact, since it may be tiny beside both.
+/// Variance of a sample, mean over channels, of a pixel with n samples.
 double variance(const Framebuffer& framebuffer, std::size_t pixel, std::int64_t n) {
-    __extension__ using Int128 = __int128;
-    const bool last_in_b = half_of_sample(static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(n - 1)) == 1;
-    const std::int64_t n_b = n / 2 + (n % 2 == 1 && last_in_b ? 1 : 0);
-    const std::int64_t n_a = n - n_b;
-    const std::int64_t* sums = &framebuffer.sums()[6 * pixel];
-    double squares = 0;
-    for (int k = 0; k < 3; ++k) {
-        const auto difference = static_cast<double>(Int128{sums[k]} * n_b - Int128{sums[3 + k]} * n_a);
-        squares += difference * difference;
-    }
+    const HalfCounts counts = HalfCounts::of(pixel, 0, n);
+    const std::array<double, 3> squares = squared_differences(framebuffer, pixel, counts);
     const double scale = framebuffer.fixed_point().scale();
-    return squares / (scale * scale) / (static_cast<double>(n) * static_cast<double>(n_a) * static_cast<double>(n_b)) /
-           3;
+    return (squares[0] + squares[1] + squares[2]) / (scale * scale) /
+           (static_cast<double>(n) * static_cast<double>(counts.a) * static_cast<double>(counts.b)) / 3;
 }
 
 /// The mean over the pixels around each pixel, as far as they are in the image: its own value is left out, so that its

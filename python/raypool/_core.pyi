@@ -30,5 +30,5 @@ def render(
     arguments: list[str],
     progress: Callable[[int, int], object] | None,
     in_pieces: bool,
-) -> tuple[NDArray[np.float32], str]:
-    """The image, and the report as JSON."""
+) -> tuple[NDArray[np.float32], str, dict[str, NDArray[np.float32]]]:
+    """The image, the report as JSON, and AOVs by the names of their channels."""

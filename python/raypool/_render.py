@@ -41,6 +41,7 @@ def render(
     schedule: str | None = None,
     grain: str | None = None,
     count_work: bool = False,
+    aovs: bool = False,
     pool_scope: str | None = None,
     pool_rays: int | str | None = None,
     pool_batch: int | None = None,
@@ -80,6 +81,9 @@ def render(
     schedule       -- "balanced", or "static", "dynamic", "guided" or "tasks" and a chunk: "dynamic,4"
     grain          -- what a loop iteration renders, unless balanced: "pixel", "line" or "tile:16"
     count_work     -- count box and primitive tests (slower)
+    aovs           -- the report's "aovs" then has arrays for what a pixel shows beside radiance: "A" (alpha), "Z" (depth)
+                      and "samples" of shape (height, width), and "N" (normal), "albedo" and "variance" of shape
+                      (height, width, 3); docs/command.md says what each is
     pool_scope to accumulator -- of the wavefront engine, as `raypool render --help` has them
     progress       -- called in this thread with (paths done, paths in all) about twice a second; with target_error,
                       "in all" is what spp allows at most. What it raises ends the render and comes out.
@@ -98,8 +102,14 @@ def render_by(
     scene: Scene, options: Mapping[str, Any], progress: Progress | None, in_pieces: bool
 ) -> tuple[Image, Report]:
     """render() by options as a mapping; in one piece for those who time it: no callback, and Ctrl-C waits."""
-    image, stats = _core.render(scene, _arguments(options), progress, in_pieces)
-    return image, json.loads(stats)
+    image, stats, channels = _core.render(scene, _arguments(options), progress, in_pieces)
+    report = json.loads(stats)
+    if channels:
+        report["aovs"] = {name: channels[name] for name in ("A", "Z", "samples")} | {
+            layer: np.stack([channels[f"{layer}.{part}"] for part in parts], axis=-1)
+            for layer, parts in (("N", "XYZ"), ("albedo", "RGB"), ("variance", "RGB"))
+        }
+    return image, report
 
 
 def _arguments(options: Mapping[str, Any]) -> list[str]:

@@ -9,7 +9,7 @@ Bytes encode_png(const Image& image, const ImageAttributes&) {
 ImageContents decode_png(BytesView bytes, std::int64_t max_side, std::int64_t max_pixels) {
     return decode_pfm(bytes, {max_side, max_pixels});
 }
-Bytes encode_exr(const Image& image, const ImageAttributes&) {
+Bytes encode_exr(const Image& image, const ImageAttributes&, const ExrExtras&) {
     return encode_pfm(image);
 }
 ImageContents decode_exr(BytesView bytes, const ImageLimits& limits) {

@@ -38,7 +38,7 @@ class Stats(CommandTest):
         stats = self.stats("--spp", 4, "--threads", 2, "--grain", "pixel", "--count-work", "-o", "out.png")
         self.assert_kinds({
             "hash": str, "paths": int, "segments": int, "segments_per_path": float, "mpaths_per_s": float,
-            "seconds": {"read": float, "compile": float, "render": float, "write": float, "total": float},
+            "seconds": {"read": float, "compile": float, "render": float, "aovs": float, "write": float, "total": float},
             "sample_statistics": {"non_finite": int, "clamped": int, "clamped_energy": float},
             "features": [str],
             "settings": {"scene": str, "width": int, "height": int, "spp": int, "samples": [int], "depth": int,
@@ -58,7 +58,7 @@ class Stats(CommandTest):
         for thread in stats["threads"]:
             self.assertGreaterEqual(min(thread["busy_s"], thread["wait_s"]), 0)
             self.assertLessEqual(thread["busy_s"] + thread["wait_s"], 1.01 * stats["seconds"]["render"] + 1e-3)
-        self.assertLessEqual(sum(stats["seconds"][phase] for phase in ("read", "compile", "render", "write")),
+        self.assertLessEqual(sum(stats["seconds"][phase] for phase in ("read", "compile", "render", "aovs", "write")),
                              stats["seconds"]["total"])
         self.assertIn("-ffp-contract=off", stats["environment"]["flags"])
         self.assertNotIn("-ffast-math", stats["environment"]["flags"])

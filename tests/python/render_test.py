@@ -63,6 +63,24 @@ class Image(unittest.TestCase):
             self.assertTrue(np.array_equal(part, whole[5:9, 3:13]))
             self.assertEqual((report["paths"], calls[-1]), (160, (160, 160)))
 
+    def test_has_channels_beside_it_where_they_are_asked_for(self):
+        plain, report = raypool.render("cornell", width=20, spp=6)
+        self.assertNotIn("aovs", report)
+        image, with_aovs = raypool.render("cornell", width=20, spp=6, aovs=True)
+        self.assertTrue(np.array_equal(image, plain))
+        self.assertEqual(with_aovs["hash"], report["hash"])
+        aovs = with_aovs["aovs"]
+        self.assertEqual({name: values.shape for name, values in aovs.items()},
+                         {name: (20, 20) for name in ("A", "Z", "samples")} |
+                         {name: (20, 20, 3) for name in ("N", "albedo", "variance")})
+        self.assertTrue((aovs["A"] == 1).all() and (aovs["samples"] == 6).all())
+        wall = aovs["N"][10, 0]  # the left wall: green light on it, and a normal to the right
+        self.assertGreater(abs(wall[0]), 0.99)
+        self.assertGreater(aovs["albedo"][10, 0, 1] + aovs["albedo"][10, 0, 0], aovs["albedo"][10, 0, 2])
+        part = raypool.render("cornell", width=20, spp=6, aovs=True, crop=(3, 5, 13, 9))[1]["aovs"]
+        for name, values in part.items():
+            self.assertTrue(np.array_equal(values, aovs[name][5:9, 3:13]), name)
+
     def test_of_parts_is_that_of_the_whole(self):
         whole = raypool.render(SCENE, spp=6)[0].astype(float)
         parts = [raypool.render(SCENE, spp=6, samples=samples)[0].astype(float) for samples in ((0, 2), "2:6")]
