@@ -88,11 +88,11 @@ void info(const std::string& name) {
         print("meshes: {}, of {} triangles and {} vertices{}\n", scene.meshes.size(), compiled.triangles.size(),
               compiled.vertices.size(), instances_text(scene));
     print_hidden(scene, coincidence.is_hidden);
-    print("features: {}\n", listed(compiled.features));
+    print("features of the scene: {}\n", listed(compiled.features));
     const auto code = [](const Features& features, std::size_t first) {
         return kCompiledFeatures[compiled_features_index(features, first)];
     };
-    print("runs on code compiled for: {}; in double: {}\n",
+    print("features of the code that runs it, one of a few that are compiled: {}; in double: {}\n",
           listed(code(compiled.features, kFirstCompiledFeatures<float>)),
           listed(code(compiled.features, kFirstCompiledFeatures<double>)));
     const CodeWidths widths = code_widths();

@@ -56,7 +56,10 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
         raypool::cli::add_report_command(app, status);
 #endif
         raypool::cli::add_manual_command(app);
-        app.parse_complete_callback([&app] {  // before what a command does
+        if (argc > 1 && argv[1][0] != '-' &&
+            app.get_subcommands([&](const CLI::App* command) { return command->check_name(argv[1]); }).empty())
+            return fail(2, fmt::format("there is no command {} (see --help)", argv[1]));  // and no help beside it
+        app.parse_complete_callback([&app] {                                              // before what a command does
             for (const CLI::App* command : app.get_subcommands()) raypool::cli::check_option_rules(*command);
         });
         try {

@@ -1,5 +1,6 @@
-// Says in one line that the processor lacks what the command was compiled for, in place of an illegal instruction. Runs
-// before anything else does, and is itself compiled for any x86-64 processor: so it calls nothing of the project.
+// Says in one line that the processor lacks what the command was compiled for, in place of an illegal instruction: the
+// widths of registers, from AVX on. (What else a build for one new processor holds is not asked for.) Runs before
+// anything else does, and is itself compiled for any x86-64 processor: so it calls nothing of the project.
 
 #include "cli/processor_check.h"
 
@@ -11,8 +12,7 @@ namespace raypool::cli {
 
 namespace {
 
-/// Whether the processor has a set of instructions by its name in kInstructionSets. Of those that every processor with
-/// AVX has too, it is not asked.
+/// Whether the processor has a set of instructions by its name in kInstructionSets. True of what comes with AVX anyway.
 bool has(const char* name) {
     const auto is = [name](const char* other) { return std::strcmp(name, other) == 0; };
     if (is("avx")) return __builtin_cpu_supports("avx") != 0;
@@ -37,7 +37,9 @@ void say(const char* text) {
         if (has(*name)) continue;
         say("raypool: this processor lacks ");
         say(*name);
-        say(", which the command was compiled for: build it on this machine, or with --preset portable for AVX2\n");
+        say(std::strncmp(*name, "avx512", 6) == 0
+                ? ", which the command was compiled for: build it on this machine, or with --preset portable\n"
+                : ": raypool takes one with AVX2 and FMA\n");
         _exit(2);
     }
 }

@@ -25,13 +25,11 @@
 #include "cluster/agreement.h"
 #include "core/base/error.h"
 #include "core/base/json_file.h"
-#include "core/base/memory.h"
 #include "core/base/output_file.h"
 #include "core/image/cost_image.h"
 #include "core/image/image_file.h"
 #include "core/runtime/environment.h"
 #include "core/runtime/trace.h"
-#include "gpu/engine.h"
 
 namespace raypool::cli {
 
@@ -55,10 +53,10 @@ void write_cost_image(const RenderOptions& options, const CostImage& cost, const
 
 void warn_of_infinite_halves(const std::string& file, const Image& image) {
     const auto count = std::count_if(image.rgb.begin(), image.rgb.end(),
-                                     [](float value) { return std::isfinite(value) && value > kGreatestHalf; });
+                                     [](float value) { return std::isfinite(value) && value >= kInfiniteAsHalf; });
     if (count > 0)
-        print(stderr, "raypool: {}: {} values are above {}, the most that half precision holds, and infinite there\n",
-              file, count, kGreatestHalf);
+        print(stderr, "raypool: {}: {} {} of {} or more, which half precision has not: infinite there\n", file, count,
+              count == 1 ? "value" : "values", kInfiniteAsHalf);
 }
 
 /// What only one rank can do is for rank 0; what is not gathered from ranks is refused. Returns the checkpoint's lock.

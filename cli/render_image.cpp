@@ -88,6 +88,7 @@ RenderedImage render_in(const Scene& scene, const RenderOptions& options, Checkp
                          ? std::accumulate(sums.sample_counts.begin(), sums.sample_counts.end(), std::int64_t{0})
                          : compiled.pixel_count() * sums.sample_count();
     progress.before = progress.paths.load();
+    std::vector<ImageChannel> aovs;
     {
         // How many samples an adaptive render will take is not known.
         const std::int64_t total = is_adaptive ? 0 : path_count(compiled, record.settings);
@@ -95,6 +96,7 @@ RenderedImage render_in(const Scene& scene, const RenderOptions& options, Checkp
         const ProgressBar bar(progress, total, {"M paths/s", 1e-6}, options.is_quiet);
         const std::unique_ptr<Engine> engine = make_engine(record, ranks);
         record.report = render_missing(*engine, compiled, record, sums, record.adaptive, checkpoint);
+        aovs = make_aovs(record, compiled, sums.framebuffer);  // before the render says that it is done
     }
     if (ranks.count() > 1) {
         record.ranks = cluster::gather(ranks, record.report);
@@ -105,7 +107,7 @@ RenderedImage render_in(const Scene& scene, const RenderOptions& options, Checkp
     record.samples_done = is_adaptive ? std::llround(record.adaptive.mean_samples()) : sums.sample_count();
     if constexpr (std::same_as<Scalar, float>)
         if (options.pixel) print_paths(scene, compiled, record, sums.framebuffer);
-    return finish_record(record, scene, compiled, std::move(sums.framebuffer));
+    return finish_record(record, scene, std::move(sums.framebuffer), std::move(aovs));
 }
 
 }  // namespace

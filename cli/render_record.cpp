@@ -18,18 +18,23 @@ namespace raypool::cli {
 
 namespace {
 
-/// Sums, the image made of them and, where asked for, costs with their image, a second half of the sums with estimates,
-/// channels and the checkpoint's bytes must fit into the memory that is available, before anything is touched.
-void check_memory(const Scene& scene, const RenderOptions& options, int process_count) {
+/// Sums, the image made of them and, where asked for, costs with their image, a second half of the sums with estimates
+/// and the checkpoint's bytes must fit into the memory that is available, before anything is touched. So must channels
+/// of the pixels that are shown, with the file's bytes.
+void check_memory(const RenderRecord& record, const RenderOptions& options, int process_count) {
     std::size_t pixel_bytes = 3 * (sizeof(std::int64_t) + sizeof(float));
     if (!options.cost_image.empty()) pixel_bytes += sizeof(std::int64_t) + 3 * sizeof(float);
-    if (options.target_error > 0)
+    if (record.target_error > 0)
         pixel_bytes += 3 * sizeof(std::int64_t) + 3 * sizeof(std::int32_t) + 2 * sizeof(double);
-    if (options.has_aovs) pixel_bytes += 2 * 3 * sizeof(std::int64_t) + 12 * sizeof(float);
+    if (record.has_aovs) pixel_bytes += 3 * sizeof(std::int64_t);
     if (!options.checkpoint.file.empty()) pixel_bytes += 6 * sizeof(std::int64_t) + sizeof(std::int32_t);
-    check_available(
-        static_cast<std::size_t>(scene.width * scene.height) * pixel_bytes * static_cast<std::size_t>(process_count),
-        fmt::format("--width: the sums and images of {} x {} pixels", scene.width, scene.height));
+    constexpr std::size_t kAovBytes = 12 * sizeof(float) + 15 * sizeof(float) + 10 * sizeof(std::int16_t);
+    const PixelWindow& crop = record.crop;
+    const std::int64_t shown = (crop.x_end - crop.x_begin) * (crop.y_end - crop.y_begin);
+    const std::size_t bytes = static_cast<std::size_t>(record.width * record.height) * pixel_bytes +
+                              static_cast<std::size_t>(shown) * (record.has_aovs ? kAovBytes : 0);
+    check_available(bytes * static_cast<std::size_t>(process_count),
+                    fmt::format("--width: the sums and images of {} x {} pixels", record.width, record.height));
 }
 
 PixelWindow crop_of(const RenderOptions& options, const Scene& scene) {
@@ -62,14 +67,14 @@ RenderRecord start_record(const RenderOptions& options) {
 }
 
 void add_scene(RenderRecord& record, const Scene& scene, const RenderOptions& options, int process_count) {
-    check_memory(scene, options, process_count);
-    const Features needed = needed_features(scene_features(scene), record.settings);
-    record.pool = pool_settings(options.pool, stored_record_bytes(needed, record.precision), record.settings.threads);
-    record.gpu = gpu_settings(options, gpu::pool_record_bytes(needed));
     record.scene_name = scene.name;
     record.width = scene.width;
     record.height = scene.height;
     record.crop = crop_of(options, scene);
+    check_memory(record, options, process_count);
+    const Features needed = needed_features(scene_features(scene), record.settings);
+    record.pool = pool_settings(options.pool, stored_record_bytes(needed, record.precision), record.settings.threads);
+    record.gpu = gpu_settings(options, gpu::pool_record_bytes(needed));
 }
 
 template <class Scalar>
@@ -90,22 +95,27 @@ Framebuffer make_sums(const RenderRecord& record, const CompiledScene<Scalar>& s
 }
 
 template <class Scalar>
-RenderedImage finish_record(RenderRecord& record, const Scene& scene, const CompiledScene<Scalar>& compiled,
-                            Framebuffer sums) {
+std::vector<ImageChannel> make_aovs(RenderRecord& record, const CompiledScene<Scalar>& compiled,
+                                    const Framebuffer& sums) {
+    if (!record.has_aovs) return {};
+    const Stopwatch watch;
+    const ImageSamples samples{record.crop, record.settings.first_sample, record.settings.end_sample,
+                               record.adaptive.sample_counts};
+    std::vector<ImageChannel> channels =
+        first_hit_channels(compiled, record.settings, samples, record.settings.threads);
+    for (ImageChannel& channel : variance_channels(sums, samples)) channels.push_back(std::move(channel));
+    record.aovs_s = watch.seconds();
+    return channels;
+}
+
+RenderedImage finish_record(RenderRecord& record, const Scene& scene, Framebuffer sums,
+                            std::vector<ImageChannel> aovs) {
     const bool is_adaptive = record.target_error > 0;
-    RenderedImage made;
-    if (record.has_aovs) {
-        const Stopwatch watch;
-        const ImageSamples samples{record.crop, record.settings.first_sample, record.settings.end_sample,
-                                   record.adaptive.sample_counts};
-        made.aovs = first_hit_channels(compiled, record.settings, samples, record.settings.threads);
-        for (ImageChannel& channel : variance_channels(sums, samples)) made.aovs.push_back(std::move(channel));
-        if (!is_adaptive) sums = sums.together();  // the hash is of what was asked for
-        record.aovs_s = watch.seconds();
-    }
+    RenderedImage made{{}, std::move(aovs)};
     record.sum_step = 1 / sums.fixed_point().scale();
     record.dimmest_light = dimmest_light(scene);
     if (is_cropped(record)) sums = sums.cut(record.crop);
+    if (record.has_aovs && !is_adaptive) sums = sums.together();  // the hash is of what was asked for
     record.hash = sums.hash();
     Image& image = made.image;
     image = is_adaptive ? sums.image(record.adaptive.sample_counts) : sums.image(record.samples_done);
@@ -118,7 +128,7 @@ template CompiledScene<float> compile_for(RenderRecord&, const Scene&);
 template CompiledScene<double> compile_for(RenderRecord&, const Scene&);
 template Framebuffer make_sums(const RenderRecord&, const CompiledScene<float>&);
 template Framebuffer make_sums(const RenderRecord&, const CompiledScene<double>&);
-template RenderedImage finish_record(RenderRecord&, const Scene&, const CompiledScene<float>&, Framebuffer);
-template RenderedImage finish_record(RenderRecord&, const Scene&, const CompiledScene<double>&, Framebuffer);
+template std::vector<ImageChannel> make_aovs(RenderRecord&, const CompiledScene<float>&, const Framebuffer&);
+template std::vector<ImageChannel> make_aovs(RenderRecord&, const CompiledScene<double>&, const Framebuffer&);
 
 }  // namespace raypool::cli

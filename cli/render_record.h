@@ -28,14 +28,17 @@ CompiledScene<Scalar> compile_for(RenderRecord& record, const Scene& scene);
 template <class Scalar>
 Framebuffer make_sums(const RenderRecord& record, const CompiledScene<Scalar>& scene);
 
+/// The AOVs (core/runtime/aovs.h) of sums that are all there; none where the record has none.
+template <class Scalar>
+std::vector<ImageChannel> make_aovs(RenderRecord& record, const CompiledScene<Scalar>& compiled,
+                                    const Framebuffer& sums);
+
 /// What becomes of a render.
 struct RenderedImage {
     Image image;
-    std::vector<ImageChannel> aovs;  ///< those of aovs.h, where the record has them
+    std::vector<ImageChannel> aovs;
 };
 /// Makes the image of what is there: record.samples_done samples, or the adaptive report's. Adds what is known of it.
-template <class Scalar>
-RenderedImage finish_record(RenderRecord& record, const Scene& scene, const CompiledScene<Scalar>& compiled,
-                            Framebuffer sums);
+RenderedImage finish_record(RenderRecord& record, const Scene& scene, Framebuffer sums, std::vector<ImageChannel> aovs);
 
 }  // namespace raypool::cli

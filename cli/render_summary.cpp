@@ -94,7 +94,8 @@ void print_summary(const RenderRecord& record) {
             gpu.capacity == 0 ? "paths" : fmt::format("{} rounds over a pool of {} records", gpu.rounds, gpu.capacity),
             gpu.kernel_s, bytes_text(report.memory_bytes));
     if (record.truncation_bound > 0)
-        print("depth {} cuts off a radiance of at most {:.3g} a pixel\n", settings.depth, record.truncation_bound);
+        print("what depth {} cuts off is proved to be at most a radiance of {:.3g} a pixel, and mostly is far less\n",
+              settings.depth, record.truncation_bound);
     print_step(record);
     if (report.statistics.non_finite > 0 || report.statistics.clamped > 0)
         print("bad samples: {} not finite and left out, {} channels cut (radiance {:.6g} in all)\n",

@@ -57,6 +57,7 @@ json settings_json(const RenderRecord& record) {
         if (has_grain(settings.schedule)) result["grain"] = to_string(settings.grain);
     }
     if (record.target_error > 0) result["target_error"] = record.target_error;
+    if (record.has_aovs) result["aovs"] = true;
     if (engines().find(record.engine).has_pool) result["pool"] = to_json(record.pool);
     if (record.engine == "gpu") result["gpu"]["form"] = gpu::kFormNames[static_cast<std::size_t>(record.gpu.form)];
     if (record.engine == "gpu" && record.gpu.form == gpu::Form::Wave) result["gpu"]["rays"] = record.gpu.capacity;

@@ -125,7 +125,8 @@ cli::RenderedImage render_in(const Scene& scene, cli::RenderRecord& record, cons
     watch.look(0, path_count(compiled, record.settings));
     Framebuffer sums = cli::make_sums(record, compiled);
     record.report = render_into(sums, compiled, record, watch, in_pieces);
-    return cli::finish_record(record, scene, compiled, std::move(sums));
+    std::vector<ImageChannel> aovs = cli::make_aovs(record, compiled, sums);
+    return cli::finish_record(record, scene, std::move(sums), std::move(aovs));
 }
 
 /// An array of numpy that has the values of a vector, which are not copied.

@@ -7,7 +7,7 @@ add_test(NAME documentation
 set_tests_properties(documentation PROPERTIES LABELS slow COST 100  # begun first, not to end last
                                               ENVIRONMENT OMP_WAIT_POLICY=passive)
 
-if(NOT RAYPOOL_SANITIZE)  # pictures of 64 samples a pixel
+if(CMAKE_BUILD_TYPE STREQUAL Release)  # pictures of 64 samples a pixel
   add_test(NAME gallery COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/draw_gallery $<TARGET_FILE:raypool> --check)
   set_tests_properties(gallery PROPERTIES LABELS slow)
 endif()

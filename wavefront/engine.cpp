@@ -45,7 +45,7 @@ std::unique_ptr<RenderSession> begin_any(const CompiledScene<Scalar>& scene, con
     if (framebuffer.has_halves() && adds_reals(pool.accumulator))
         throw InputError(
             "--accumulator: sums of atomic-float and atomic-double depend on their order, and so would what "
-            "--target-error asks for");
+            "--target-error and --aovs ask for");
     if (settings.depth == 0) return std::make_unique<DarkSession<Scalar>>(scene, settings.progress);
     try {
         return pool.width == StageWidth::Simd ? begin<WideReal<Scalar>>(scene, settings, pool, framebuffer)

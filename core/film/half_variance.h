@@ -2,7 +2,9 @@
 ///
 /// Both halves estimate one mean. With sums a and b of n_a and n_b samples, n = n_a + n_b, the difference n_b a - n_a b
 /// has the expectation 0 and the variance n n_a n_b times that of a sample. Its square is an estimate with one degree
-/// of freedom: right on average over many pixels, and little to go by for a single one.
+/// of freedom: right on average over many pixels, and little to go by for a single one. It takes samples for
+/// independent. Those of Sobol's sequence avoid each other, so that it is too high for them: up to 5 times (60 renders
+/// of 16 samples).
 #pragma once
 
 #include <array>

@@ -19,6 +19,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,8 +49,8 @@ using ImageAttributes = std::map<std::string, std::string>;
 /// By the extension, in either case; an InputError for any other than .png, .exr and .pfm.
 ImageFormat image_format(const std::filesystem::path& path);
 
-/// The greatest number that a half-precision float holds.
-inline constexpr float kGreatestHalf = 65504;
+/// What is at least this becomes infinite in half precision.
+inline constexpr float kInfiniteAsHalf = 65520;
 
 /// A channel of an EXR file beside red, green and blue.
 struct ImageChannel {
@@ -60,9 +61,8 @@ struct ImageChannel {
 
 /// What only an EXR file has room for.
 struct ExrExtras {
-    std::vector<ImageChannel> channels;
-    /// Red, green and blue, and the channels that may be, in half precision: 11 bits, at most kGreatestHalf (what is
-    /// greater becomes infinite), at least 2^-24.
+    std::span<const ImageChannel> channels = {};
+    /// Red, green and blue, and the channels that may be, in half precision: to 11 significant bits.
     bool is_half = false;
     [[nodiscard]] bool is_empty() const { return channels.empty() && !is_half; }
 };

@@ -1,5 +1,6 @@
 #include "core/runtime/aovs.h"
 
+#include <algorithm>
 #include <array>
 #include <initializer_list>
 #include <limits>
@@ -53,21 +54,22 @@ FirstHit first_hit(const SceneView<Scalar>& scene, const RandomSeed& seed, std::
     return found;
 }
 
-/// Calls visit(place, pixel) for the pixels of a row of the window: their place in it and in the scene's image.
-template <class Visit>
-void for_each_pixel(const PixelWindow& window, std::int64_t y, std::int64_t scene_width, Visit visit) {
+std::int64_t pixel_count(const PixelWindow& window) {
+    return (window.x_end - window.x_begin) * (window.y_end - window.y_begin);
+}
+
+/// The number in the scene's image of a pixel by its number in the window.
+std::size_t pixel_of(const PixelWindow& window, std::int64_t place, std::int64_t scene_width) {
     const std::int64_t columns = window.x_end - window.x_begin;
-    for (std::int64_t x = 0; x < columns; ++x)
-        visit(static_cast<std::size_t>((y - window.y_begin) * columns + x),
-              static_cast<std::size_t>(y * scene_width + window.x_begin + x));
+    const std::int64_t row = place / columns;
+    return static_cast<std::size_t>((window.y_begin + row) * scene_width + window.x_begin + place - row * columns);
 }
 
 std::vector<ImageChannel> make_channels(const PixelWindow& window,
                                         std::initializer_list<std::pair<const char*, bool>> names) {
-    const std::int64_t pixels = (window.x_end - window.x_begin) * (window.y_end - window.y_begin);
     std::vector<ImageChannel> channels;
     for (const auto& [name, may_be_half] : names)
-        channels.push_back({name, std::vector<float>(static_cast<std::size_t>(pixels)), may_be_half});
+        channels.push_back({name, std::vector<float>(static_cast<std::size_t>(pixel_count(window))), may_be_half});
     return channels;
 }
 
@@ -86,7 +88,8 @@ std::vector<ImageChannel> first_hit_channels(const CompiledScene<Scalar>& scene,
                                                                 {"albedo.G", true},
                                                                 {"albedo.B", true}});
     const RandomSeed seed = random_seed(settings.seed, settings.sampler);
-    const auto fill = [&](std::size_t place, std::size_t pixel) {
+    const auto fill = [&](std::size_t place) {
+        const std::size_t pixel = pixel_of(window, static_cast<std::int64_t>(place), scene.width);
         FirstHit sum;
         for (std::int64_t s = samples.begin_of(pixel); s < samples.end_of(pixel); ++s) {
             const FirstHit hit = first_hit<Scalar>(scene, seed, static_cast<std::int64_t>(pixel), s);
@@ -100,11 +103,16 @@ std::vector<ImageChannel> first_hit_channels(const CompiledScene<Scalar>& scene,
                                                           ? static_cast<float>(sum.value[FirstHit::kDistance] / hits)
                                                           : std::numeric_limits<float>::infinity();
     };
+    constexpr std::int64_t kPixelsAtOnce = 64;
+    const std::int64_t count = pixel_count(window);
     FirstException failure;
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (std::int64_t y = window.y_begin; y < window.y_end; ++y) {
+    for (std::int64_t first = 0; first < count; first += kPixelsAtOnce) {
         const FlushDenormals flush;
-        failure.run([&] { for_each_pixel(window, y, scene.width, fill); });
+        failure.run([&] {
+            for (std::int64_t place = first; place < std::min(first + kPixelsAtOnce, count); ++place)
+                fill(static_cast<std::size_t>(place));
+        });
     }
     failure.rethrow();
     return channels;
@@ -119,7 +127,9 @@ std::vector<ImageChannel> variance_channels(const Framebuffer& framebuffer, cons
     std::vector<ImageChannel> channels = make_channels(
         samples.window, {{"samples", false}, {"variance.R", false}, {"variance.G", false}, {"variance.B", false}});
     const double scale = framebuffer.fixed_point().scale();
-    const auto fill = [&](std::size_t place, std::size_t pixel) {
+    for (std::int64_t i = 0; i < pixel_count(samples.window); ++i) {
+        const std::size_t pixel = pixel_of(samples.window, i, framebuffer.width());
+        const auto place = static_cast<std::size_t>(i);
         const HalfCounts counts = HalfCounts::of(pixel, samples.begin_of(pixel), samples.end_of(pixel));
         const std::array<double, 3> squares = squared_differences(framebuffer, pixel, counts);
         const auto n = static_cast<double>(counts.all());
@@ -128,9 +138,7 @@ std::vector<ImageChannel> variance_channels(const Framebuffer& framebuffer, cons
         for (std::size_t k = 0; k < 3; ++k)
             channels[1 + k].values[place] = parts > 0 ? static_cast<float>(squares[k] / (scale * scale) / parts)
                                                       : std::numeric_limits<float>::infinity();
-    };
-    for (std::int64_t y = samples.window.y_begin; y < samples.window.y_end; ++y)
-        for_each_pixel(samples.window, y, framebuffer.width(), fill);
+    }
     return channels;
 }
 

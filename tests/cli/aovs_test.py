@@ -111,6 +111,27 @@ class Aovs(CommandTest):
         for channel, (_, values) in part.items():
             self.assertEqual(values, [whole[channel][1][8 * y + x] for y in range(1, 4) for x in range(2, 7)], channel)
 
+    def test_are_of_the_samples_that_are_asked_for(self):
+        def albedo(*more):
+            self.run_well("render", "paper", "--width", 24, *more, "--aovs", "-o", "out.exr", "--quiet")
+            return self.read("out.exr")[2]["albedo.R"][1]
+
+        whole, parts = albedo("--spp", 6), [albedo("--spp", 6, "--samples", part) for part in ("0:2", "2:6")]
+        for i, value in enumerate(whole):
+            self.assertAlmostEqual(value, (2 * parts[0][i] + 4 * parts[1][i]) / 6, places=6)
+        for more in (("--seed", 1), ("--sampler", "sobol")):
+            self.assertNotEqual(albedo("--spp", 6, *more), whole)
+        self.assertLess(sum(abs(a - b) for a, b in zip(albedo("--spp", 6, "--precision", "double"), whole)), 0.1 * sum(whole))
+
+    def test_of_a_pixel_stand_beside_its_paths(self):
+        self.run_well("render", "scene.json", "--spp", 4, "--aovs", "-o", "whole.exr", "--quiet")
+        shown = self.run_well("render", "scene.json", "--spp", 4, "--pixel", "3,3", "--aovs", "-o", "pixel.exr").stdout
+        distances = [float(line.split()[-1]) for line in shown.splitlines() if line.startswith("   1 sphere 0")]
+        whole, pixel = self.read("whole.exr")[2], self.read("pixel.exr")[2]
+        self.assertAlmostEqual(pixel["Z"][1][0], sum(distances) / 4, delta=1e-5)
+        for channel, (_, values) in pixel.items():
+            self.assertEqual(values, [whole[channel][1][8 * 3 + 3]], channel)
+
     def test_come_from_a_pipe_too_and_their_picture_is_read(self):
         piped = self.run_well("render", "scene.json", "--spp", 4, "--aovs", "-o", "exr:-", text=False, errors=None)
         self.assertEqual(read_exr(piped.stdout)[2]["samples"][1], 48 * [4])
@@ -125,6 +146,9 @@ class Aovs(CommandTest):
             for name in ("out.png", "out.pfm", "png:-"):
                 self.assert_refused("render", "scene.json", flag, "-o", name, named=[flag, ".exr"])
         self.assert_refused("render", "scene.json", "--aovs", "-o", "out.exr", "--checkpoint", "sums", named=["--aovs", "--checkpoint"])
+        self.assert_refused("render", "scene.json", "--aovs", "-o", "out.exr", "--accumulator", "atomic-float",
+                            named=["--accumulator", "--aovs"])
+        self.assert_refused("render", "scene.json", "--aovs", "-o", "out.exr", "--width", 65000, "--height", 65000, named=" GB")
 
 
 class Half(CommandTest):
@@ -146,7 +170,7 @@ class Half(CommandTest):
         self.write("bright.json", changed(SCENE, "/background", [1e5, 1, 65504]))
         result = self.run_command("render", "bright.json", "--spp", 2, "--half", "-o", "half.exr", "--quiet")
         self.assertEqual(result.returncode, 0)
-        self.assertRegex(result.stderr, r"\Araypool: half.exr: \d+ values are above 65504, [^\n]*\n\Z")
+        self.assertRegex(result.stderr, r"\Araypool: half.exr: \d+ values of 65520 or more, [^\n]*\n\Z")
         colours = read_exr((self.folder / "half.exr").read_bytes())[2]
         self.assertEqual((colours["R"][1][0], colours["G"][1][0], colours["B"][1][0]), (math.inf, 1, 65504))
 

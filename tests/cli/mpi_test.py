@@ -160,6 +160,7 @@ class MpiTest(CommandTest):
             (("render", "absent.json"), 2, "absent.json"),
             (("render", "paper", "--spp", 0), 2, "--spp"),
             (("render", "paper", "--trace", "t.json"), 2, "--trace"),
+            (("render", "paper", "--aovs", "-o", "a.exr"), 2, "--aovs"),
             (("render", "paper", "--engine", "recursive", "--depth", 1000000), 2, "--depth"),
             (("render", "paper", "--spp", 1, "-o", "absent/a.png"), 2, "absent/a.png"),
             (("render", "scene.json", "--spp", 1, "--checkpoint", "/dev/full"), 2, "/dev/full"),

@@ -11,6 +11,13 @@ POOL_OPTIONS = {"--pool-scope": "shared", "--refill": "drain", "--stage-width": 
                 "--pool-rays": "100", "--pool-batch": "100"}
 
 
+class Command(CommandTest):
+    def test_that_there_is_not_is_named_whatever_else_is_asked(self):
+        for more in ((), ("--help",), ("--spp", 4)):
+            self.assert_refused("rendr", *more, named="there is no command rendr (see --help)")
+        self.assertIn("render ", self.run_well("--help").stdout)
+
+
 class OptionThatDoesNothing(CommandTest):
     def assert_idle(self, *arguments, named):
         self.assert_refused(*arguments, named=[*named, "does nothing"])

@@ -182,7 +182,7 @@ class Render(CommandTest):
         stats = self.stats("--spp", 1, "--depth", 3)
         summary = self.run_well("render", "scene.json", "--spp", 1, "--depth", 3).stdout
         self.assertGreater(stats["truncation_bound"], 0)
-        self.assertIn(f"depth 3 cuts off a radiance of at most {stats['truncation_bound']:.3g} a pixel\n", summary)
+        self.assertIn(f"what depth 3 cuts off is proved to be at most a radiance of {stats['truncation_bound']:.3g} a pixel, ", summary)
 
     def test_needs_neither_a_scene_nor_an_output(self):
         result = self.run_well("render", "--width", 16, "--spp", 1)
@@ -249,7 +249,7 @@ class PoolRays(CommandTest):
 class Info(CommandTest):
     def test_prints_needs_bytes_and_trees(self):
         text = self.run_well("info").stdout
-        self.assertIn("features: motion, defocus, metal, fuzz, dielectric, checker\n", text)
+        self.assertIn("features of the scene: motion, defocus, metal, fuzz, dielectric, checker\n", text)
         self.assertRegex(text, r"\bray record: \d+ bytes in float, \d+ in double\n")
         self.assertRegex(text, r"\bsphere tree: \d+ nodes \d+ wide, \d+ levels, \d+ leaves holding \d+ ")
         # Shapes that stand still get a time, too, from code for every feature; the last is that of builds with no other.

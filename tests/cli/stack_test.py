@@ -42,7 +42,7 @@ class Recursion(CommandTest):
         super().setUp()
         self.write("scene.json", INSIDE)
         # Sanitizers widen frames, and their builds have code for every feature alone.
-        code = re.search(r"runs on code compiled for: (.*);", self.run_well("info", "scene.json").stdout)[1]
+        code = re.search(r"features of the code that runs it, .*: (.*);", self.run_well("info", "scene.json").stdout)[1]
         self.has_wide_frames = "lights" in code
 
     def test_runs_as_deep_as_the_main_threads_stack_holds(self):

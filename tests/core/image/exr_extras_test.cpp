@@ -24,9 +24,9 @@ TEST(ExrExtras, AreWrittenBesideThePicture) {
     for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = 1 + 0.1F * static_cast<float>(i);
     std::vector<float> depth;
     for (int i = 0; i < kColumns * kRows; ++i) depth.push_back(1 / (1 + static_cast<float>(i)));
+    const std::vector<ImageChannel> channels{{"Z", depth, false}, {"albedo.R", depth, true}};
     for (const bool is_half : {false, true}) {
-        write_image(folder / "extras.exr", ImageFormat::Exr, image, {{"raypool.hash", "abc"}},
-                    {{{"Z", depth, false}, {"albedo.R", depth, true}}, is_half});
+        write_image(folder / "extras.exr", ImageFormat::Exr, image, {{"raypool.hash", "abc"}}, {channels, is_half});
         const ImageContents contents = read_image_contents(folder / "extras.exr");
         EXPECT_EQ(contents.left_out, (std::vector<std::string>{"channel Z", "channel albedo.R"}));
         EXPECT_EQ(contents.attributes.at("raypool.hash"), "abc");

@@ -1,9 +1,12 @@
 /// AOVs against what geometry and a white sky say of them, and variance against that of many renders.
 #include "core/runtime/aovs.h"
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -26,8 +29,9 @@ Channels by_name(const std::vector<ImageChannel>& channels) {
 }
 
 template <class Scalar = float>
-Channels first_hits(const Scene& scene, const ImageSamples& samples, int threads = 1) {
-    return by_name(first_hit_channels(compile<Scalar>(scene), ImageSettings{}, samples, threads));
+Channels first_hits(const Scene& scene, const ImageSamples& samples, int threads = 1,
+                    const ImageSettings& settings = {}) {
+    return by_name(first_hit_channels(compile<Scalar>(scene), settings, samples, threads));
 }
 
 ImageSamples all_of(const Scene& scene, std::int64_t spp) {
@@ -37,7 +41,7 @@ ImageSamples all_of(const Scene& scene, std::int64_t spp) {
 /// Shapes between a camera at (0, 0, 5), which looks at the origin, and a white sky.
 Scene white_room(const std::string& shapes) {
     return parse_scene(fmt::format(R"({{
-        "description": "",
+        "description": "A white sky.",
         "image": {{"width": 24, "height": 16}},
         "camera": {{"look_from": [0, 0, 5], "look_at": [0, 0, 0], "vertical_fov_degrees": 40}},
         "background": [1, 1, 1],
@@ -52,23 +56,36 @@ Scene white_room(const std::string& shapes) {
                        "white_room.json", ".");
 }
 
-/// A convex body in a white sky shows its albedo: what it scatters arrives at the sky.
+/// A convex body in a white sky shows its albedo: what it scatters arrives at the sky. That tells that first hits are
+/// of the render's own camera rays, by their lens, time, seed and sampler.
 TEST(Aovs, AlbedoIsWhatAWhiteSkyShows) {
-    constexpr std::int64_t kSpp = 8;
-    for (const char* const material : {"tiled", "metal"}) {
-        const Scene scene = white_room(
-            fmt::format(R"({{"type": "sphere", "center": [0.3, 0, 0], "radius": 1, "material": "{}"}})", material));
-        const Image image = render<float>(scene, kSpp, 2).image();
-        Channels aovs = first_hits(scene, all_of(scene, kSpp));
-        int partly = 0;
-        for (std::size_t i = 0; i < image.rgb.size() / 3; ++i) {
-            const float alpha = aovs["A"][i];
-            partly += alpha > 0 && alpha < 1 ? 1 : 0;
-            EXPECT_NEAR(image.rgb[3 * i], 1 - alpha + aovs["albedo.R"][i], 2e-6) << i;
-            EXPECT_NEAR(image.rgb[3 * i + 1], 1 - alpha + aovs["albedo.G"][i], 2e-6) << i;
-            EXPECT_NEAR(image.rgb[3 * i + 2], 1 - alpha + aovs["albedo.B"][i], 2e-6) << i;
+    RenderSettings settings;
+    settings.end_sample = 8;
+    settings.depth = 2;
+    for (const bool is_blurred : {false, true}) {
+        for (const char* const material : {"tiled", "metal"}) {
+            Scene scene = white_room(
+                fmt::format(R"({{"type": "sphere", "center": [0.3, 0, 0], "radius": 1, "material": "{}"}})", material));
+            if (is_blurred) {
+                scene.camera.defocus_angle_degrees = 4;
+                scene.camera.focus_distance = 3;
+                scene.camera.shutter_close = 1;
+                scene.spheres[0].center1 += Vector3d(0.5, 0.2, 0);
+                settings.seed = 7;
+                settings.sampler = Sampler::Sobol;
+            }
+            const Image image = raypool::render(recursive::IterativeEngine(), compile<float>(scene), settings).image();
+            Channels aovs = first_hits(scene, all_of(scene, settings.end_sample), 2, settings);
+            int partly = 0;
+            for (std::size_t i = 0; i < image.rgb.size() / 3; ++i) {
+                const float alpha = aovs["A"][i];
+                partly += alpha > 0 && alpha < 1 ? 1 : 0;
+                EXPECT_NEAR(image.rgb[3 * i], 1 - alpha + aovs["albedo.R"][i], 2e-6) << i;
+                EXPECT_NEAR(image.rgb[3 * i + 1], 1 - alpha + aovs["albedo.G"][i], 2e-6) << i;
+                EXPECT_NEAR(image.rgb[3 * i + 2], 1 - alpha + aovs["albedo.B"][i], 2e-6) << i;
+            }
+            EXPECT_GT(partly, is_blurred ? 40 : 10);
         }
-        EXPECT_GT(partly, 10);
     }
 }
 
@@ -167,8 +184,12 @@ TEST(HalfCounts, AreThoseOfTheSamplesOneByOne) {
             }
 }
 
-/// Over many seeds the estimates must be, on average, the squared deviations of the pixels from their mean.
-TEST(Aovs, VarianceIsThatOfManyRenders) {
+struct VarianceCheck {
+    double difference = 0;  ///< of the estimates from the squared deviations of pixels from their mean, over many seeds
+    double error = 0;       ///< standard error of that
+    double truth = 0;
+};
+VarianceCheck check_variance(Sampler sampler) {
     const Scene scene = small_scene("cornell", 6);
     const CompiledScene<float> compiled = compile<float>(scene);
     const ImageSamples samples{{0, scene.width, 0, scene.height}, 2, 7};
@@ -181,6 +202,7 @@ TEST(Aovs, VarianceIsThatOfManyRenders) {
         settings.end_sample = samples.end;
         settings.seed = static_cast<std::uint64_t>(seed);
         settings.depth = 5;
+        settings.sampler = sampler;
         Framebuffer framebuffer(scene.width, scene.height, fixed_point(compiled, settings, 7), Halves::Apart);
         recursive::IterativeEngine().render(compiled, settings, framebuffer);
         Channels aovs = by_name(variance_channels(framebuffer, samples));
@@ -206,9 +228,18 @@ TEST(Aovs, VarianceIsThatOfManyRenders) {
         difference += (estimates[seed] - deviation) / kSeeds;
         squares += std::pow(estimates[seed] - deviation, 2) / kSeeds;
     }
-    const double error = std::sqrt(squares / kSeeds);
-    EXPECT_LT(error, 0.1 * true_variance);  // so that it can fail
-    EXPECT_FALSE(is_significant(p_value_of_z(difference / error), 1)) << difference << " of " << true_variance;
+    return {difference, std::sqrt(squares / kSeeds), true_variance};
+}
+
+TEST(Aovs, VarianceIsThatOfManyRenders) {
+    const VarianceCheck check = check_variance(Sampler::Independent);
+    EXPECT_LT(check.error, 0.1 * check.truth);  // so that it can fail
+    EXPECT_FALSE(is_significant(p_value_of_z(check.difference / check.error), 1)) << check.difference;
+}
+TEST(Aovs, VarianceIsTooHighOfSamplesThatAvoidEachOther) {
+    const VarianceCheck check = check_variance(Sampler::Sobol);
+    EXPECT_GT(check.difference, 0.2 * check.truth);
+    EXPECT_LT(check.difference, 10 * check.truth);
 }
 
 TEST(Aovs, VarianceOfOneSampleIsNotKnown) {
