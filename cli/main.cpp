@@ -87,7 +87,7 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
 
 #ifdef RAYPOOL_CHECKS_PROCESSOR
 /// Constants, since they are read before anything is made.
-constinit const raypool::cli::NeededInstructionSets raypool::cli::needed_instruction_sets{
+constinit const raypool::cli::NeededInstructionSets raypool::cli::kNeededInstructionSets{
     std::begin(raypool::kInstructionSets), std::end(raypool::kInstructionSets)};
 #endif
 

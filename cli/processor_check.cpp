@@ -33,7 +33,7 @@ void say(const char* text) {
 /// Before the constructors of C++, whose priority is 65535.
 [[gnu::constructor(101)]] void check_processor() {
     __builtin_cpu_init();
-    for (const char* const* name = needed_instruction_sets.begin; name != needed_instruction_sets.end; ++name) {
+    for (const char* const* name = kNeededInstructionSets.begin; name != kNeededInstructionSets.end; ++name) {
         if (has(*name)) continue;
         say("raypool: this processor lacks ");
         say(*name);

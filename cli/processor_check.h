@@ -9,6 +9,6 @@ struct NeededInstructionSets {
 };
 /// kInstructionSets (core/math/processor.h) of what the command is compiled for. Defined in main.cpp, which is compiled
 /// as all the rest is.
-extern const NeededInstructionSets needed_instruction_sets;
+extern const NeededInstructionSets kNeededInstructionSets;
 
 }  // namespace raypool::cli
