@@ -12,16 +12,18 @@ if(CMAKE_BUILD_TYPE STREQUAL Release)  # pictures of 64 samples a pixel
   set_tests_properties(gallery PROPERTIES LABELS slow)
 endif()
 
-add_test(NAME layers COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/layers_test.py ${PROJECT_SOURCE_DIR})
-set_tests_properties(layers PROPERTIES LABELS unit)
+if(CMAKE_BUILD_TYPE STREQUAL Release)  # they run nothing that is built
+  add_test(NAME layers COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/layers_test.py ${PROJECT_SOURCE_DIR})
+  set_tests_properties(layers PROPERTIES LABELS unit)
 
-foreach(name build crossover efficiency gpu page report report_browser results scene_size traversal)
-  add_test(NAME analysis_${name}
-           COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/analysis/${name}_test.py ${PROJECT_SOURCE_DIR})
-  set_tests_properties(analysis_${name} PROPERTIES LABELS unit)
-endforeach()
-# Chromium takes 400 MB, so scripts/install_dependencies leaves it out; the test says when it finds none.
-set_tests_properties(analysis_report_browser PROPERTIES SKIP_RETURN_CODE 77 LABELS slow)
+  foreach(name build crossover efficiency gpu page report report_browser results scene_size traversal)
+    add_test(NAME analysis_${name}
+             COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/analysis/${name}_test.py ${PROJECT_SOURCE_DIR})
+    set_tests_properties(analysis_${name} PROPERTIES LABELS unit)
+  endforeach()
+  # Chromium takes 400 MB, so scripts/install_dependencies leaves it out; the test says when it finds none.
+  set_tests_properties(analysis_report_browser PROPERTIES SKIP_RETURN_CODE 77 LABELS slow)
+endif()
 
 if(RAYPOOL_SANITIZE MATCHES thread)
   # Without Archer, ThreadSanitizer takes the barriers of OpenMP for races. libomp loads it by itself where it finds it.
