@@ -170,7 +170,7 @@ class Render(CommandTest):
                                 (("--light-sampling", "light"), "not known")):
             hashes = set()
             for engine in ("recursive", "wavefront"):
-                self.run_command("render", "cornell", "--width", 20, "--target-error", 0.2, "--spp", 4096, "--engine",
+                self.run_command("render", "cornell", "--width", 20, "--target-error", 0.2, "--spp", 512, "--engine",
                                  engine, "--stats", "s.json", *options)
                 stats = json.loads((self.folder / "s.json").read_text())
                 self.assertEqual(stats["adaptive"]["target"], target)
