@@ -23,6 +23,11 @@ namespace raypool::cli {
 
 namespace {
 
+/// "1 plane", "2 planes".
+std::string counted(std::size_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 template <class Block>
 std::size_t filled_lanes(std::span<const Block> blocks) {
     std::size_t count = 0;
@@ -82,8 +87,9 @@ void info(const std::string& name) {
     };
     print("{}: {}\n", scene.name, scene.description);
     print("image: {} x {}\n", scene.width, scene.height);
-    print("shapes: {} spheres, {} quads, {} planes; {} materials, {} textures\n", scene.spheres.size(),
-          scene.quads.size(), scene.planes.size(), scene.materials.size(), scene.textures.size());
+    print("shapes: {}, {}, {}; {}, {} or colours\n", counted(scene.spheres.size(), "sphere"),
+          counted(scene.quads.size(), "quad"), counted(scene.planes.size(), "plane"),
+          counted(scene.materials.size(), "material"), counted(scene.textures.size(), "texture"));
     if (!scene.meshes.empty())
         print("meshes: {}, of {} triangles and {} vertices{}\n", scene.meshes.size(), compiled.triangles.size(),
               compiled.vertices.size(), instances_text(scene));
@@ -92,11 +98,11 @@ void info(const std::string& name) {
     const auto code = [](const Features& features, std::size_t first) {
         return kCompiledFeatures[compiled_features_index(features, first)];
     };
-    print("features of the code that runs it, one of a few that are compiled: {}; in double: {}\n",
+    print("features of the code that runs it, the smallest set compiled that has them all: {}; in double: {}\n",
           listed(code(compiled.features, kFirstCompiledFeatures<float>)),
           listed(code(compiled.features, kFirstCompiledFeatures<double>)));
     const CodeWidths widths = code_widths();
-    print("which may use: {}; stages of {} rays in float, {} in double; trees {} and {} wide\n",
+    print("that code may use: {}; stages of {} rays in float, {} in double; trees {} and {} wide\n",
           fmt::format("{}", fmt::join(widths.instruction_sets, ", ")), widths.float_lanes, widths.double_lanes,
           widths.float_tree_width, widths.double_tree_width);
     Features without_lights = compiled.features;
@@ -110,8 +116,8 @@ void info(const std::string& name) {
               ? fmt::format("; {} and {} without light sampling", record_bytes(without_lights, float{}),
                             record_bytes(without_lights, double{}))
               : "");
-    print("tested before the trees: {} spheres, {} planes\n", filled_lanes(compiled.large_spheres),
-          filled_lanes(compiled.planes));
+    print("tested before the trees: {}, {}\n", counted(filled_lanes(compiled.large_spheres), "sphere"),
+          counted(filled_lanes(compiled.planes), "plane"));
     print_tree("sphere", compiled.sphere_tree);
     print_tree("quad", compiled.quad_tree);
     print_tree("triangle", compiled.triangle_tree);

@@ -1,5 +1,6 @@
 // The raypool command. The only place that catches: bad input is one line on stderr and exit status 2.
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -8,6 +9,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -30,9 +32,24 @@ bool is_long(std::string_view command) {
     return command == "compare" || command == "advise" || command == "study";
 }
 
+/// Commands that a build without RAYPOOL_BUILD_BENCH has not.
+bool is_left_out([[maybe_unused]] std::string_view command) {
+#ifdef RAYPOOL_HAS_BENCH
+    return false;
+#else
+    return command == "advise" || command == "study" || command == "report";
+#endif
+}
+
+/// Whoever read the standard output has read enough. As of any other tool, to which SIGPIPE happens, without a word.
+constexpr int kReaderIsGone = 128 + SIGPIPE;
+
 int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
     const auto fail = [&](int status, const std::string& text) {
         return raypool::cluster::fail(ranks, status, raypool::printable(text));
+    };
+    const auto fail_to_print = [&](bool is_reader_gone) {
+        return is_reader_gone && ranks.count() == 1 ? kReaderIsGone : fail(1, "cannot write to the standard output");
     };
     try {
         if (ranks.count() > 1 && (argc < 2 || std::strcmp(argv[1], "render") != 0))
@@ -56,10 +73,14 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
         raypool::cli::add_report_command(app, status);
 #endif
         raypool::cli::add_manual_command(app);
+        if (argc > 1 && is_left_out(argv[1]))
+            return fail(2,
+                        fmt::format("this build has no command {}; the presets study and release build it", argv[1]));
+        const auto is_meant = [&](const CLI::App* command) { return command->check_name(argv[1]); };
         if (argc > 1 && argv[1][0] != '-' &&
-            app.get_subcommands([&](const CLI::App* command) { return command->check_name(argv[1]); }).empty())
-            return fail(2, fmt::format("there is no command {} (see --help)", argv[1]));  // and no help beside it
-        app.parse_complete_callback([&app] {                                              // before what a command does
+            app.get_subcommands(is_meant).empty())  // or --help beside it would be answered
+            return fail(2, fmt::format("there is no command {} (see --help)", argv[1]));
+        app.parse_complete_callback([&app] {  // before what a command does
             for (const CLI::App* command : app.get_subcommands()) raypool::cli::check_option_rules(*command);
         });
         try {
@@ -71,8 +92,10 @@ int run(int argc, char** argv, raypool::cluster::Ranks& ranks) {
             if (ranks.is_first()) app.exit(error);  // --help, --version
         }
         // What was written before the last flush may have failed, too: help is longer than a buffer.
-        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return fail(1, "cannot write to the standard output");
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return fail_to_print(errno == EPIPE);
         return status;
+    } catch (const std::system_error& error) {
+        return error.code() == std::errc::broken_pipe ? fail_to_print(true) : fail(1, error.what());
     } catch (const raypool::InputError& error) {
         return fail(2, error.what());
     } catch (const std::bad_alloc&) {

@@ -26,7 +26,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
         ->check(CLI::IsMember(engines().names()));
     command.add_option("--spp", options.spp, "Samples per pixel (default: 100)")
         ->check(CLI::Range(std::int64_t{1}, kMostSpp));
-    command.add_option("--samples", options.samples, "Only samples A:B of them, counted from 0, without B");
+    command.add_option("--samples", options.samples, "Only samples A to B - 1 of them, as A:B; the first is 0");
     command.add_option("--crop", options.crop, "Only the pixels X0,Y0,X1,Y1: columns X0 to X1 - 1, rows Y0 to Y1 - 1");
     command.add_option("--pixel", options.pixel,
                        "Only the pixel X,Y, with every vertex of its paths on the standard output");

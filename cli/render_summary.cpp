@@ -93,6 +93,7 @@ void print_summary(const RenderRecord& record) {
             "{}: {} in {:.3f} s of kernels, {} of its memory\n", gpu.device,
             gpu.capacity == 0 ? "paths" : fmt::format("{} rounds over a pool of {} records", gpu.rounds, gpu.capacity),
             gpu.kernel_s, bytes_text(report.memory_bytes));
+    if (record.has_aovs) print("channels beside the picture: {:.3f} s more\n", record.aovs_s);
     if (record.truncation_bound > 0)
         print("what depth {} cuts off is proved to be at most a radiance of {:.3g} a pixel, and mostly is far less\n",
               settings.depth, record.truncation_bound);

@@ -2,6 +2,10 @@
 #
 # -ffp-contract=off    a fused multiply-add happens only where the source says so: one image on every machine
 # -fno-math-errno      sqrt is one instruction
+# --param=large-function-insns
+#                      No function is large. A stage is one function of tens of thousands of calls to what
+#                      <experimental/simd> is made of. gcc stops inlining these early in a function that is large, and later
+#                      weighs each against all others: half of the time to compile it, for slower code (CONTRIBUTING.md).
 # Not here, ever: -ffast-math and its parts. They change images (docs/architecture.md, "One image").
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
@@ -29,11 +33,15 @@ set_target_properties(raypool_flags PROPERTIES EXPORT_NAME flags)
 target_compile_features(raypool_flags INTERFACE cxx_std_20)
 target_compile_options(raypool_flags INTERFACE
   ${RAYPOOL_ARCH_FLAG} -ffp-contract=off -fno-math-errno)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  target_compile_options(raypool_flags INTERFACE --param=large-function-insns=1000000000)
+endif()
 target_compile_definitions(raypool_flags INTERFACE EIGEN_DONT_PARALLELIZE EIGEN_DONT_VECTORIZE)
 
-# For what is no kernel, such as commands and most tests: two thirds of the time to compile. It changes no value.
+# For what is no kernel, such as commands and most tests: two thirds of the time to compile, and half of it for the
+# sanitizers of a debug build. It changes no value.
 add_library(raypool_not_hot INTERFACE)
-target_compile_options(raypool_not_hot INTERFACE $<$<CONFIG:Release>:-O1>)
+target_compile_options(raypool_not_hot INTERFACE $<$<CONFIG:Release>:-O1>$<$<CONFIG:Debug>:-O0>)
 
 add_library(raypool_warnings INTERFACE)
 # gcc 12 finds "uninitialised" values inside its own AVX-512 header (its bug 105593), and tells on ARM that gcc 9 passed

@@ -12,8 +12,9 @@ if(NOT RAYPOOL_NVCC OR RAYPOOL_SANITIZE)
 endif()
 
 set(translate ${CMAKE_CURRENT_SOURCE_DIR}/gpu/ptx/translate.py)
-# raypool_ptx(NAME SOURCE TEST flags...): the program NAME: TEST, and the PTX that nvcc makes of SOURCE with these flags.
-function(raypool_ptx name source test)
+# raypool_ptx(NAME SOURCE TEST LEVEL flags...): the program NAME: TEST, and the PTX that nvcc makes of SOURCE with these
+# flags, translated, which g++ optimises as far as LEVEL says.
+function(raypool_ptx name source test level)
   set(ptx ${CMAKE_CURRENT_BINARY_DIR}/${name}.ptx)
   set(cpp ${CMAKE_CURRENT_BINARY_DIR}/${name}_translated.cpp)
   raypool_nvcc(${source} ${ptx} -arch=compute_${RAYPOOL_NVCC_ARCH} -ptx ${ARGN})
@@ -22,7 +23,7 @@ function(raypool_ptx name source test)
   add_executable(${name} ${test} gpu/ptx/machine.cpp ${cpp})
   set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   set_source_files_properties(${cpp} PROPERTIES SKIP_PRECOMPILE_HEADERS ON COMPILE_OPTIONS
-    "-O1;-Wno-unused-function;-Wno-unused-label;-Wno-unused-variable;-Wno-unused-but-set-variable;-Wno-overflow")
+    "${level};-Wno-unused-function;-Wno-unused-label;-Wno-unused-variable;-Wno-unused-but-set-variable;-Wno-overflow")
   raypool_gpu_program(${name})
 endfunction()
 # In a bundle for another machine (scripts/gpu_bundle) they find scenes where they are run, and are not run where they
@@ -35,8 +36,8 @@ function(raypool_gpu_program name)
   target_compile_definitions(${name} PRIVATE RAYPOOL_SOURCE_DIR="${RAYPOOL_GPU_SCENES}" RAYPOOL_FAILURE_FOLDER="out/failed")
 endfunction()
 
-raypool_ptx(gpu_ptx_test gpu/kernels.cu gpu/ptx_test.cpp ${RAYPOOL_NVCC_ROUNDING})
-raypool_ptx(gpu_ptx_operations_test tests/gpu/operations.cu gpu/ptx_operations_test.cpp ${RAYPOOL_NVCC_ROUNDING})
+raypool_ptx(gpu_ptx_test gpu/kernels.cu gpu/ptx_test.cpp -O1 ${RAYPOOL_NVCC_ROUNDING})
+raypool_ptx(gpu_ptx_operations_test tests/gpu/operations.cu gpu/ptx_operations_test.cpp -O1 ${RAYPOOL_NVCC_ROUNDING})
 
 # On a GPU, where there is one.
 raypool_nvcc_object(tests/gpu/operations.cu ${CMAKE_CURRENT_BINARY_DIR}/operations.o)
@@ -47,9 +48,9 @@ foreach(program gpu_ptx_test gpu_ptx_operations_test gpu_cuda_test)
   gtest_discover_tests(${program} PROPERTIES LABELS equivalence DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
 endforeach()
 
-# Were the compiler to fuse operations or to approximate them, it would be found out.
-raypool_ptx(gpu_fused_ptx gpu/kernels.cu gpu/ptx_test.cpp -fmad=true -ftz=true -prec-div=true -prec-sqrt=true)
-raypool_ptx(gpu_fast_ptx gpu/kernels.cu gpu/ptx_test.cpp -use_fast_math)
+# Were the compiler to fuse operations or to approximate them, it would be found out, by one scene.
+raypool_ptx(gpu_fused_ptx gpu/kernels.cu gpu/ptx_test.cpp -O0 -fmad=true -ftz=true -prec-div=true -prec-sqrt=true)
+raypool_ptx(gpu_fast_ptx gpu/kernels.cu gpu/ptx_test.cpp -O0 -use_fast_math)
 foreach(mutant gpu_fused_ptx gpu_fast_ptx)
   add_test(NAME ${mutant} COMMAND ${mutant} --gtest_filter=*/PtxForms.*/paper)
   set_tests_properties(${mutant} PROPERTIES LABELS equivalence PASS_REGULAR_EXPRESSION "hash [0-9a-f]+ in place of [0-9a-f]+")

@@ -10,9 +10,8 @@ set_tests_properties(documentation PROPERTIES LABELS slow COST 100  # begun firs
 if(CMAKE_BUILD_TYPE STREQUAL Release)  # pictures of 64 samples a pixel
   add_test(NAME gallery COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/draw_gallery $<TARGET_FILE:raypool> --check)
   set_tests_properties(gallery PROPERTIES LABELS slow)
-endif()
 
-if(CMAKE_BUILD_TYPE STREQUAL Release)  # they run nothing that is built
+  # These run nothing that is built.
   add_test(NAME layers COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/layers_test.py ${PROJECT_SOURCE_DIR})
   set_tests_properties(layers PROPERTIES LABELS unit)
 

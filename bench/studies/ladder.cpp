@@ -126,7 +126,8 @@ Study ladder_study() {
              {"append_s", ColumnType::Real, "passing survivors on to the next round; seconds"},
              {"barrier_s", ColumnType::Real, "waiting at the barriers of rounds; seconds"},
              {"end_s", ColumnType::Real, "waiting for the last thread; seconds"}}),
-        .cases = ladder_cases};
+        .cases = ladder_cases,
+        .facts = rung_facts};
 }
 
 }  // namespace raypool::studies

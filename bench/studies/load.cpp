@@ -32,9 +32,15 @@ constexpr const char* kShares = "one of all paths, equal shares";
 /// What every row says.
 Cells start_of_row(const StudyScene& scene, const RenderSettings& settings, const std::string& group,
                    const std::string& way, const char* source) {
-    return {{"scene", scene.name}, {"light_sampling", to_string(settings.light_sampling)},
-            {"group", group},      {"way", way},
-            {"source", source},    {"threads", settings.threads}};
+    return {{"scene", scene.name},
+            {"light_sampling", to_string(settings.light_sampling)},
+            {"group", group},
+            {"way", way},
+            {"source", source},
+            {"width", scene.compiled.width},
+            {"height", scene.compiled.height},
+            {"samples", settings.end_sample},
+            {"threads", settings.threads}};
 }
 
 std::vector<Cells> count_rows(const std::string& group, const std::string& way, Render render) {
@@ -162,6 +168,10 @@ Study load_study() {
                  {"source", ColumnType::Text,
                   "counted: by a real run of so many threads; replayed: from the counted costs of paths, where a real "
                   "run with more threads than cores would show the operating system's time slices"},
+                 {"width", ColumnType::Count,
+                  "of the image, pixels: the study's own choice unless --width asks for another"},
+                 {"height", ColumnType::Count, "of the image, pixels"},
+                 {"samples", ColumnType::Count, "a pixel"},
                  {"threads", ColumnType::Count, "of the loop"},
                  {"thread", ColumnType::Count, "which, from 0"},
                  {"segments", ColumnType::Count, "rays that it traced"},
@@ -172,7 +182,8 @@ Study load_study() {
                  {"busy_s", ColumnType::Real, "working; no more threads than cores only"},
                  {"wait_s", ColumnType::Real, "waiting for others; no more threads than cores only"},
                  {"hash", ColumnType::Text, "counted: of the sums of the image"}},
-            .cases = load_cases};
+            .cases = load_cases,
+            .facts = rung_facts};
 }
 
 }  // namespace raypool::studies

@@ -53,6 +53,13 @@ NamedEngine canonical_pool() {
 NamedEngine pool_engine(std::string name, const wavefront::PoolSettings& pool) {
     return {std::move(name), std::make_shared<wavefront::WavefrontEngine>(pool)};
 }
+
+nlohmann::json rung_facts() {
+    nlohmann::json rungs = nlohmann::json::array();
+    for (const wavefront::Rung& rung : wavefront::ladder(1))
+        rungs.push_back({{"name", rung.name}, {"step", rung.step}});
+    return {{"rungs", rungs}};
+}
 wavefront::PoolSettings rung_settings(const std::string& rung, int threads) {
     const std::vector<wavefront::Rung> rungs = wavefront::ladder(threads);
     const auto found = std::find_if(rungs.begin(), rungs.end(), [&](const auto& r) { return r.name == rung; });

@@ -52,6 +52,8 @@ NamedEngine canonical_pool();
 /// The pool of a rung of the ladder (wavefront/ladder.h) for so many threads. A name that is none is a bug.
 wavefront::PoolSettings rung_settings(const std::string& rung, int threads);
 NamedEngine pool_engine(std::string name, const wavefront::PoolSettings& pool);
+/// Facts of a study (study.h) that shows rungs: "rungs", the name of each and what is different from the one before.
+nlohmann::json rung_facts();
 
 /// A way of handing out the image, by the texts that users write.
 struct LoopWay {

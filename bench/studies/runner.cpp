@@ -5,9 +5,11 @@
 #include <fstream>
 #include <numeric>
 #include <regex>
+#include <set>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bench/studies/run_data.h"
 #include "core/base/error.h"
@@ -76,10 +78,23 @@ std::vector<Case> asked_cases(const Study& study, const StudyOptions& options) {
     return cases;
 }
 
+/// The keys that one has and the other has not, or has with another value.
+std::vector<std::string> differing_keys(const json& a, const json& b) {
+    std::set<std::string> keys;
+    for (const json& side : {a, b})
+        for (const auto& [key, value] : side.items())
+            if (!a.contains(key) || !b.contains(key) || a.at(key) != b.at(key)) keys.insert(key);
+    return {keys.begin(), keys.end()};
+}
+
 void check_same(const json& found, const json& wanted, const std::string& key, const fs::path& folder) {
-    if (found.value(key, json()) == wanted.at(key)) return;
-    throw InputError(
-        fmt::format("{}: holds another run ({} differs); go on with the same, or add --fresh", folder.string(), key));
+    const json was = found.value(key, json());
+    if (was == wanted.at(key)) return;
+    const std::string keys = was.is_object() && wanted.at(key).is_object()
+                                 ? fmt::format(": {}", fmt::join(differing_keys(was, wanted.at(key)), ", "))
+                                 : "";
+    throw InputError(fmt::format("{}: holds another run (it differs in {}{}); go on with the same, or add --fresh",
+                                 folder.string(), key, keys));
 }
 
 std::vector<Column> all_columns(const Study& study) {

@@ -2,14 +2,13 @@
 ///
 /// PNG: 8 bits a channel, coded with the curve of sRGB, clamped to [0, 1], NaN as black. Lossy.
 /// EXR: written as 32-bit floats, or the picture in halves, with other channels beside it (ExrExtras), ZIP-compressed.
-/// Read by OpenEXR: scan lines or tiles, one part or several, half,
-/// float or integer values, any compression. Of several layers the first that has red, green and blue is taken, of
-/// files without one the first luminance. Not read: parts of deep data, channels of fewer values than pixels (but
-/// luminance with chroma, which OpenEXR turns into RGB at half precision), and rows so wide and of so many channels
-/// that a block of them takes more than 1 GiB and more than 1 KiB a byte of the file (kMaxExrBlockValues,
-/// kMaxExrExpansion); docs/image-files.md has it all. PFM: 32-bit floats, bottom row first, in colour or
-/// grey; written little endian, read in both byte orders. Carries no attributes. EXR and PFM keep every bit. The bytes
-/// of a file depend on the image and the attributes only.
+/// Read by OpenEXR: scan lines or tiles, one part or several, half, float or integer values, any compression. Of
+/// several layers the first that has red, green and blue is taken, of files without one the first luminance. Not read:
+/// parts of deep data, channels of fewer values than pixels (but luminance with chroma, which OpenEXR turns into RGB at
+/// half precision), and rows so wide and of so many channels that a block of them takes more than 1 GiB and more than 1
+/// KiB a byte of the file (kMaxExrBlockValues, kMaxExrExpansion); docs/image-files.md has it all. PFM: 32-bit floats,
+/// bottom row first, in colour or grey; written little endian, read in both byte orders. Carries no attributes. EXR and
+/// PFM keep every bit. The bytes of a file depend on the image, the attributes and ExrExtras only.
 ///
 /// Called by the command and by the scene reader. A file that is absent, broken, or larger than the limits throws an
 /// InputError naming it, before memory is spent on what it only claims to hold. Thread-safe, for different outputs.
@@ -67,17 +66,16 @@ struct ExrExtras {
     [[nodiscard]] bool is_empty() const { return channels.empty() && !is_half; }
 };
 
-/// Extras are for EXR files only.
 void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes);
+/// In a format that the name need not say. Extras are for EXR files only.
 void write_image(const std::filesystem::path& path, ImageFormat format, const Image& image,
                  const ImageAttributes& attributes, const ExrExtras& extras = {});
 
 /// What a file holds.
 struct ImageContents {
-    Image image;              ///< the data window
-    PixelWindow data_window;  ///< where the image's pixels lie, and ...
-    PixelWindow
-        display_window;  ///< ... what is to be shown of them; both are the image's own where there is no such thing
+    Image image;                        ///< the data window
+    PixelWindow data_window;            ///< where the image's pixels lie; the image's own where there is no such thing
+    PixelWindow display_window;         ///< what is to be shown of them; likewise
     std::vector<std::string> left_out;  ///< what is in the file and not in `image`, such as "channel A"
     std::string primaries = "sRGB";     ///< chromaticities of red, green, blue and white, where they are others
     ImageAttributes attributes;         ///< of type string, of an EXR file; not the name and type of its part

@@ -1,5 +1,6 @@
 """`raypool report`: pages that join runs of studies: a list of all, a page for each, and two runs of one study side by side."""
 import itertools
+import os
 import re
 import sys
 import textwrap
@@ -42,7 +43,13 @@ class Run:
 
     @property
     def label(self):
-        return f"{self.machine}, {self.commit}, {self.run['finished'][:10]}"
+        """With the minute and the folder: two runs may be of one machine, commit and day."""
+        return f"{self.place}: {self.machine}, {self.commit}, {self.run['finished'][:16].replace('T', ' ')} UTC"
+
+    @property
+    def place(self):
+        """The folder's name as text, whatever its bytes."""
+        return os.fsencode(self.folder).decode(errors="replace")
 
 
 def shown(path):
@@ -103,10 +110,10 @@ def verdict_counts(run):
 
 
 def runs_sheet(runs):
-    header = ["study", "machine", "commit", "finished", *map(str, Verdict), "rows"]
+    header = ["study", "folder", "machine", "commit", "finished", *map(str, Verdict), "rows"]
     return sheet("Runs", header, [
-        [cell(run.run["study"], link=f"{run.name}.html"), run.machine, cell(run.commit), run.run["finished"],
-         *verdict_counts(run), str(len(run.rows))] for run in runs])
+        [cell(run.run["study"], link=f"{run.name}.html"), cell(run.place), run.machine, cell(run.commit),
+         run.run["finished"], *verdict_counts(run), str(len(run.rows))] for run in runs])
 
 
 def pairs_sheet(compared):

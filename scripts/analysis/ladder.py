@@ -4,7 +4,7 @@ from statistics import median
 from .data import distinct, numbers, where
 from .drawing import COLOURS, plt
 from .spreads import ratios, spread, text, threads_text
-from .summary import Finding, Picture, Summary, Table
+from .summary import Finding, Picture, Summary, Table, rungs_table
 from .verdict import is_at_least, why_open
 
 BLUE, ORANGE, GREEN, RED, SKY, PINK, BLACK, YELLOW = COLOURS
@@ -152,6 +152,7 @@ def summarise(run, rows):
         summary.tables += [rates(here, threads), parts(here, threads)]
         for engine in distinct(here, "engine"):
             overheads += clock_cost(where(here, engine=engine))
+    summary.tables += rungs_table(run)
     summary.pictures.append(Picture(
         "ladder", "Where the time goes, rung by rung",
         "Each bar is the time of a thread for one ray (median run, so shorter is better); at its end, how many "

@@ -99,7 +99,7 @@ def flattened(name, value):
 def provenance(run):
     entries = [*flattened("", run["environment"]), *flattened("started", run.get("started", [])), ("finished", run["finished"]),
                ("taken by others", f"{100 * run['stolen']:.1f} % of the processor time"),
-               *flattened("", run["options"]), *flattened("fact", run.get("facts", {}))]
+               *flattened("", run["options"]), *flattened("fact", {name: fact for name, fact in run.get("facts", {}).items() if name != "rungs"})]
     return [(name, text) for name, text in entries if text]
 
 

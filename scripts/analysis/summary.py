@@ -30,6 +30,13 @@ class Table:
     rows: list = field(default_factory=list)
 
 
+def rungs_table(run):
+    """What the names of the ladder's pools mean, as a list to add to; an older run did not say so."""
+    rungs = run.get("facts", {}).get("rungs", [])
+    return [Table("The pools, and what each changes in the one before it", ["pool", "what is new"],
+                  [[rung["name"], rung["step"]] for rung in rungs])] if rungs else []
+
+
 @dataclass
 class Summary:
     findings: list = field(default_factory=list)

@@ -126,6 +126,7 @@ class Aovs(CommandTest):
     def test_of_a_pixel_stand_beside_its_paths(self):
         self.run_well("render", "scene.json", "--spp", 4, "--aovs", "-o", "whole.exr", "--quiet")
         shown = self.run_well("render", "scene.json", "--spp", 4, "--pixel", "3,3", "--aovs", "-o", "pixel.exr").stdout
+        self.assertRegex(shown, r"\nchannels beside the picture: \d+\.\d+ s more\n")
         distances = [float(line.split()[-1]) for line in shown.splitlines() if line.startswith("   1 sphere 0")]
         whole, pixel = self.read("whole.exr")[2], self.read("pixel.exr")[2]
         self.assertAlmostEqual(pixel["Z"][1][0], sum(distances) / 4, delta=1e-5)

@@ -3,6 +3,7 @@
 import itertools
 import json
 import os
+import signal
 import struct
 import zlib
 
@@ -247,6 +248,17 @@ class UnwritableOutput(CommandTest):
                 self.assert_one_line(self.run_command(*arguments, stdout=full), 1, "standard output")
         closed = self.run_command("render", "scene.json", "--spp", 1, stdout=None, preexec_fn=lambda: os.close(1))
         self.assert_one_line(closed, 1, "standard output")
+
+    def test_of_a_reader_that_has_read_enough_is_as_of_any_tool(self):
+        """Whether what is printed fits into a buffer, is flushed at the end, or is longer."""
+        for arguments in (("render", "scene.json", "--spp", "1", "-o", "out.png"), ("info", "scene.json"), ("scenes",),
+                          ("render", "--help"), ("manual",), ("manual", "bash"), ("--version",)):
+            reader, writer = os.pipe()
+            os.close(reader)
+            with os.fdopen(writer, "wb") as closed:
+                ended = self.run_command(*arguments, stdout=closed)
+            self.assertEqual((ended.returncode, ended.stderr), (128 + signal.SIGPIPE, ""), arguments)
+        self.assertTrue((self.folder / "out.png").exists())  # what was asked for was done
 
 
 if __name__ == "__main__":

@@ -181,7 +181,7 @@ class Simd(CommandTest):
         if "avx512f" in simd["instruction_sets"]:
             self.assertEqual(lanes["float"], 16)
         said = self.run_well("info", "scene.json").stdout
-        self.assertIn(f"which may use: {', '.join(simd['instruction_sets'])}; stages of {lanes['float']} rays in float",
+        self.assertIn(f"that code may use: {', '.join(simd['instruction_sets'])}; stages of {lanes['float']} rays in float",
                       said)
 
 

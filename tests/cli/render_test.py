@@ -255,7 +255,7 @@ class Info(CommandTest):
         # Shapes that stand still get a time, too, from code for every feature; the last is that of builds with no other.
         self.assertRegex(self.run_well("info", "cornell").stdout,
                          r"ray record: 60 bytes in float, 104 in double; (56 and 96|60 and 104) without light sampling")
-        self.assertRegex(self.run_well("info", "scene.json").stdout, r"1 spheres, 1 quads, 1 planes")
+        self.assertRegex(self.run_well("info", "scene.json").stdout, r"1 sphere, 1 quad, 1 plane;")
 
     def test_info_names_shapes_that_no_ray_meets(self):
         self.assertNotIn("hidden", self.run_well("info", "scene.json").stdout)

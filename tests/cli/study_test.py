@@ -85,7 +85,7 @@ class StudyTest(CommandTest):
         status = json.loads((self.folder / "status.json").read_text())
         self.assertEqual((status["what"], status["state"], status["unit"], status["done"]), ("gpu", "done", "runs", 3))
         self.write("scene.json", changed(SCENE, "/shapes/0/radius", 0.5))
-        self.assert_refused(*study, named=["out/gpu", "options differs", "--fresh"])
+        self.assert_refused(*study, named=["out/gpu", "differs in options: scene_hash)", "--fresh"])
         self.run_well(*study, "--fresh")
 
     def test_signal_loses_no_finished_row_and_repeats_none(self):
@@ -130,7 +130,7 @@ class StudyTest(CommandTest):
 
     def test_another_run_in_the_folder_is_refused(self):
         self.run_well("study", "schedules", *TINY, "--quiet")
-        self.assert_refused("study", "schedules", *TINY, "--seed", "1", named=["out/schedules", "options", "--fresh"])
+        self.assert_refused("study", "schedules", *TINY, "--seed", "1", named=["out/schedules", "differs in options: seed)", "--fresh"])
 
     def test_scene_with_a_name_that_is_no_utf8_can_be_gone_on_with(self):
         scene = os.fsdecode(b"bad\xff\x1b.json")

@@ -167,7 +167,7 @@ TEST(StudyRunner, RefusesToMixTwoRunsAndSaysWhatDiffers) {
         run_study(Fake(), other, folder.path(), {});
         FAIL() << "two runs were mixed";
     } catch (const InputError& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("options differs"));
+        EXPECT_THAT(error.what(), testing::HasSubstr("differs in options: seed)"));
     }
     EXPECT_TRUE(run_study(Fake(), other, folder.path(), {true, nullptr, nullptr}));
 }
