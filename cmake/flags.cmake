@@ -38,10 +38,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
 endif()
 target_compile_definitions(raypool_flags INTERFACE EIGEN_DONT_PARALLELIZE EIGEN_DONT_VECTORIZE)
 
-# For what is no kernel, such as commands and most tests: two thirds of the time to compile, and half of it for the
-# sanitizers of a debug build. It changes no value.
+# For what is no kernel, such as commands and most tests: two thirds of the time to compile. It changes no value.
 add_library(raypool_not_hot INTERFACE)
-target_compile_options(raypool_not_hot INTERFACE $<$<CONFIG:Release>:-O1>$<$<CONFIG:Debug>:-O0>)
+target_compile_options(raypool_not_hot INTERFACE $<$<CONFIG:Release>:-O1>)
 
 add_library(raypool_warnings INTERFACE)
 # gcc 12 finds "uninitialised" values inside its own AVX-512 header (its bug 105593), and tells on ARM that gcc 9 passed

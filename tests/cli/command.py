@@ -47,6 +47,7 @@ def changed(scene, pointer, value=None):
 
 class CommandTest(unittest.TestCase):
     command = ""
+    always = {}  # variables of the environment that every command of the test has
 
     def setUp(self):
         scratch = tempfile.TemporaryDirectory(prefix="raypool-test-")
@@ -77,7 +78,7 @@ class CommandTest(unittest.TestCase):
         keywords.setdefault("stderr", subprocess.PIPE)
         keywords = {"text": True, "errors": "backslashreplace", **keywords}
         result = subprocess.run(
-            [self.command, *map(str, arguments)], cwd=self.folder, env={**clean, **(environment or {})},
+            [self.command, *map(str, arguments)], cwd=self.folder, env={**clean, **self.always, **(environment or {})},
             stdin=subprocess.DEVNULL, check=False, **keywords)
         if environment and isinstance(result.stderr, str):
             result.stderr = re.sub(r"^(OMP|libgomp): .*\n|^\n", "", result.stderr, flags=re.MULTILINE)
