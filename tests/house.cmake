@@ -15,7 +15,7 @@ if(CMAKE_BUILD_TYPE STREQUAL Release)  # pictures of 64 samples a pixel
   add_test(NAME layers COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/layers_test.py ${PROJECT_SOURCE_DIR})
   set_tests_properties(layers PROPERTIES LABELS unit)
 
-  foreach(name build crossover efficiency gpu page report report_browser results scene_size traversal)
+  foreach(name build crossover efficiency gpu load page report report_browser results scene_size traversal)
     add_test(NAME analysis_${name}
              COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/analysis/${name}_test.py ${PROJECT_SOURCE_DIR})
     set_tests_properties(analysis_${name} PROPERTIES LABELS unit)

@@ -60,6 +60,7 @@ nlohmann::json rung_facts() {
         rungs.push_back({{"name", rung.name}, {"step", rung.step}});
     return {{"rungs", rungs}};
 }
+
 wavefront::PoolSettings rung_settings(const std::string& rung, int threads) {
     const std::vector<wavefront::Rung> rungs = wavefront::ladder(threads);
     const auto found = std::find_if(rungs.begin(), rungs.end(), [&](const auto& r) { return r.name == rung; });

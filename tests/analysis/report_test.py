@@ -5,6 +5,7 @@ import hashlib
 import html
 import io
 import json
+import os
 import re
 import tempfile
 import unittest
@@ -232,6 +233,15 @@ class JoinedTest(unittest.TestCase):
         with contextlib.redirect_stderr(said):
             status = command.report_of([str(self.folder / folder) for folder in folders], str(self.folder / site))
         return status, said.getvalue()
+
+    def test_tells_two_runs_of_one_machine_commit_and_day_apart_by_folder_whatever_its_name(self):
+        for name in ("before", os.fsdecode(b"after\xff")):
+            fake_study.write(self.folder / name, fake_study.run("aaaa"), fake_study.rows())
+        self.assertEqual(self.report("before", os.fsdecode(b"after\xff")), (0, ""))
+        beside, = (self.folder / "site").glob("*-to-*.html")
+        for page in (self.folder / "site/index.html", beside):
+            for name in ("before", "after\ufffd"):
+                self.assertRegex(page.read_text(), f"{self.folder}/{name}: a processor, [^<]* 00:00 UTC", page)
 
     def test_lists_runs_and_holds_two_of_a_study_side_by_side(self):
         fake_study.write(self.folder / "old/fake", fake_study.run("aaaa"), fake_study.rows())
